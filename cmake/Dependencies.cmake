@@ -1,0 +1,19 @@
+# Debian packages only; ./dev installs them by name.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(nanoflann 1.4 REQUIRED)
+find_package(fmt 9 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(Threads REQUIRED)
+find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
+
+# Static archives of the compressed-bytes and PNG libraries, so that the executable runs when
+# copied alone.
+find_path(ZSTD_INCLUDE_DIR zstd.h REQUIRED)
+find_library(ZSTD_STATIC_LIBRARY NAMES libzstd.a zstd REQUIRED)
+find_path(PNG_INCLUDE_DIR png.h REQUIRED)
+find_library(PNG_STATIC_LIBRARY NAMES libpng16.a libpng.a png REQUIRED)
+find_library(ZLIB_STATIC_LIBRARY NAMES libz.a z REQUIRED)
+
+if(CURLIDAR_BUILD_APP)
+  find_package(CLI11 2.1 REQUIRED)
+endif()
