@@ -11,11 +11,12 @@
 namespace curlidar {
 
 /// Statistics of a set of distances, metres. `std` is the population standard deviation; p50 and
-/// p95 interpolate linearly between order statistics.
+/// p95 interpolate linearly between order statistics. All zero when there is no distance.
 struct DistanceStats {
   std::size_t count = 0;
   double mean = 0, rms = 0, std = 0, p50 = 0, p95 = 0, max = 0;
 };
+/// NaN entries are left out of the set.
 DistanceStats summarise(std::vector<double> distances);
 
 struct Comparison {
