@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The rules of the house that a compiler does not check.
+
+Includes go one way down, public headers stand on std alone, files stay small, and every file
+names its licence. docs/design.md explains the layers; this file is their exact definition.
+"""
+import re
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+
+# Folders of src/ from the bottom up; a folder may include itself and those before it.
+LAYERS = ["base", "cloud", "io", "sensor", "image", "field", "paper", "format", "codec",
+          "reconstruct"]
+# Rooms beside the codec; they see these layers only, and no layer sees them.
+BESIDE = {"metrics", "simulate", "render"}
+SEEN_BESIDE = {"base", "cloud", "io", "sensor", "image"}
+
+# The layer that each public header belongs to. codec.hpp also declares what src/reconstruct does.
+HEADERS = {
+    "version": "base", "result": "base", "progress": "base", "vec3": "base", "cloud": "cloud",
+    "io": "io", "sensor": "sensor", "lattice": "image", "project": "image", "field": "field",
+    "settings": "paper", "codec": "codec", "compare": "metrics", "simulate": "simulate",
+    "render": "render",
+}
+
+SOURCE_FOLDERS = ["include", "src", "apps", "tests", "bench"]
+MAX_LINES = 600
+INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
+
+
+def source_files(*folders):
+    files = [file for folder in folders for file in sorted((ROOT / folder).rglob("*"))
+             if file.suffix in {".hpp", ".cpp", ".py"}]
+    assert files, f"no sources in {folders}"
+    return files
+
+
+def includes(file):
+    """(quote, path) of every include of a file."""
+    return INCLUDE.findall(file.read_text(encoding="utf-8"))
+
+
+def layer_of_include(path):
+    """The layer an include leads to, or None if it leaves the library."""
+    folder, _, rest = path.partition("/")
+    if folder == "curlidar":
+        name = rest.removesuffix(".hpp")
+        assert name in HEADERS, f"{path}: add the new public header to HEADERS in {__file__}"
+        return HEADERS[name]
+    return folder if rest and folder in {*LAYERS, *BESIDE} else None
+
+
+def may_include(layer, other):
+    if layer == other:
+        return True
+    if layer in BESIDE:
+        return other in SEEN_BESIDE
+    return other in LAYERS and LAYERS.index(other) < LAYERS.index(layer)
+
+
+class LayersTest(unittest.TestCase):
+    def test_rule_itself(self):
+        self.assertTrue(may_include("codec", "base"))
+        self.assertFalse(may_include("base", "codec"))
+        self.assertTrue(may_include("metrics", "sensor"))
+        self.assertFalse(may_include("metrics", "codec"))
+        self.assertFalse(may_include("codec", "metrics"))
+
+    def test_every_folder_of_src_has_a_place(self):
+        folders = {folder.name for folder in (ROOT / "src").iterdir() if folder.is_dir()}
+        self.assertLessEqual(folders, {*LAYERS, *BESIDE})
+
+    def test_includes_of_the_library_go_down(self):
+        wrong = []
+        for file in source_files("src"):
+            layer = file.relative_to(ROOT / "src").parts[0]
+            for quote, path in includes(file):
+                other = layer_of_include(path)
+                if other is not None and not may_include(layer, other):
+                    wrong.append(f"{file.relative_to(ROOT)} ({layer}) includes {path} ({other})")
+                if quote == '"' and other is None and not (ROOT / "src" / path).is_file():
+                    wrong.append(f"{file.relative_to(ROOT)} includes {path}: not in the library")
+        self.assertEqual(wrong, [])
+
+    def test_public_headers_go_down_and_use_std_only(self):
+        wrong = []
+        for file in source_files("include"):
+            layer = layer_of_include(f"curlidar/{file.name}")
+            for quote, path in includes(file):
+                if quote == "<":
+                    if "/" in path or path.endswith(".h"):
+                        wrong.append(f"{file.name} includes <{path}>, which is not std")
+                elif not path.startswith("curlidar/"):
+                    wrong.append(f"{file.name} includes {path}, which is not public")
+                elif not may_include(layer, layer_of_include(path)):
+                    wrong.append(f"{file.name} ({layer}) includes {path}")
+        self.assertEqual(wrong, [])
+
+    def test_the_command_uses_public_headers_only(self):
+        wrong = [f"{file.relative_to(ROOT)} includes {path}"
+                 for file in source_files("apps") for _, path in includes(file)
+                 if not path.startswith("curlidar/") and layer_of_include(path) is not None]
+        self.assertEqual(wrong, [])
+
+    def test_files_stay_small(self):
+        long = [f"{file.relative_to(ROOT)}: {lines} lines" for file in source_files(*SOURCE_FOLDERS)
+                if (lines := len(file.read_text(encoding="utf-8").splitlines())) > MAX_LINES]
+        self.assertEqual(long, [])
+
+    def test_every_file_names_its_licence(self):
+        scripts = [ROOT / "dev", ROOT / ".ci" / "run"]
+        bare = [str(file.relative_to(ROOT)) for file in source_files(*SOURCE_FOLDERS) + scripts
+                if not any("SPDX-License-Identifier: BSD-3-Clause" in line for line in
+                           file.read_text(encoding="utf-8").splitlines()[:2])]
+        self.assertEqual(bare, [])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
