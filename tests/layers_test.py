@@ -18,11 +18,12 @@ LAYERS = ["base", "cloud", "io", "sensor", "image", "field", "paper", "format", 
 BESIDE = {"metrics", "simulate", "render"}
 SEEN_BESIDE = {"base", "cloud", "io", "sensor", "image"}
 
-# The layer that each public header belongs to. codec.hpp also declares what src/reconstruct does.
+# The layer that each public header belongs to. settings.hpp holds plain values that flow down to
+# every layer that needs them; codec.hpp also declares what src/reconstruct does.
 HEADERS = {
     "version": "base", "result": "base", "progress": "base", "vec3": "base", "cloud": "cloud",
-    "io": "io", "sensor": "sensor", "lattice": "image", "project": "image", "field": "field",
-    "settings": "paper", "codec": "codec", "compare": "metrics", "simulate": "simulate",
+    "io": "io", "sensor": "sensor", "lattice": "image", "project": "image", "settings": "image",
+    "field": "field", "paper": "paper", "codec": "codec", "compare": "metrics", "simulate": "simulate",
     "render": "render",
 }
 
