@@ -19,11 +19,12 @@ BESIDE = {"metrics", "simulate", "render"}
 SEEN_BESIDE = {"base", "cloud", "io", "sensor", "image"}
 
 # The layer that each public header belongs to. settings.hpp holds plain values that flow down to
-# every layer that needs them; codec.hpp also declares what src/reconstruct does.
+# every layer that needs them; paper.hpp shows stages of the codec, and codec.hpp also declares
+# what src/reconstruct does.
 HEADERS = {
     "version": "base", "result": "base", "progress": "base", "vec3": "base", "cloud": "cloud",
     "io": "io", "sensor": "sensor", "lattice": "image", "project": "image", "settings": "image",
-    "field": "field", "paper": "paper", "codec": "codec", "compare": "metrics", "simulate": "simulate",
+    "field": "field", "paper": "codec", "codec": "codec", "compare": "metrics", "simulate": "simulate",
     "render": "render",
 }
 
