@@ -107,7 +107,12 @@ class ByteWriter {
     }
     write(static_cast<std::uint8_t>(value));
   }
-  void write_bytes(ByteSpan bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+  void write_bytes(ByteSpan bytes) {
+    // Not insert(): gcc 12 takes its growth for an overflow (-Wstringop-overflow).
+    const std::size_t end = bytes_.size();
+    bytes_.resize(end + bytes.size());
+    if (!bytes.empty()) std::memcpy(bytes_.data() + end, bytes.data(), bytes.size());
+  }
   void write_string(std::string_view text) {
     write_varint(text.size());
     write_bytes(std::as_bytes(std::span(text.data(), text.size())));

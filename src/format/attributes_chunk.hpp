@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The attributes chunk: named values of the coded returns, lossless.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "curlidar/cloud.hpp"
+#include "curlidar/result.hpp"
+#include "format/container.hpp"
+
+namespace curlidar {
+
+inline constexpr std::size_t kMaxAttributes = 256;
+inline constexpr std::size_t kMaxAttributeNameBytes = 255;
+inline constexpr std::uint32_t kMaxAttributeComponents = 65536;
+
+/// The payload for attributes of `returns` returns each, bit for bit (NaN payloads included).
+/// invalid_argument, with the attribute named, for a wrong number of values, no or too many
+/// components, a name that is empty, taken, too long or not UTF-8.
+Result<std::vector<std::byte>> write_attributes(const std::vector<Attribute>& attributes,
+                                                std::size_t returns);
+/// The attributes of `returns` returns; limit_exceeded if they take more than max_bytes of memory
+/// together.
+Result<std::vector<Attribute>> read_attributes(const Chunk& chunk, std::uint64_t returns,
+                                               std::uint64_t max_bytes);
+
+}  // namespace curlidar
