@@ -54,6 +54,10 @@ Result<Cloud> read_cloud(const std::string& path, const ReadOptions& options = {
 Result<Cloud> parse_cloud(std::span<const std::byte> bytes, const std::string& name,
                           const ReadOptions& options = {});
 
+/// The bytes that write_cloud writes; `name` is used for messages and for telling the format.
+Result<std::vector<std::byte>> format_cloud(const Cloud& cloud, const std::string& name,
+                                            const WriteOptions& options = {});
+
 /// Writes a cloud; "-" is standard output. Atomic: the file appears whole or not at all.
 /// An attribute that the format cannot hold is an error, never dropped silently.
 Status write_cloud(const std::string& path, const Cloud& cloud, const WriteOptions& options = {});
