@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A bounding volume hierarchy: which few of many primitives may a ray meet.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "simulate/primitive.hpp"
+
+namespace curlidar::scenery {
+
+/// Binary tree of axis-aligned boxes, split by the surface area heuristic in 16 bins.
+class Bvh {
+ public:
+  Bvh() = default;
+  /// O(n log n).
+  explicit Bvh(std::span<const Bounds> bounds);
+
+  /// The primitives in the order of the leaves: order()[i] is the index of the i-th.
+  const std::vector<std::uint32_t>& order() const { return order_; }
+
+  /// Calls visit(i, t_max) for the primitives (numbered in leaf order) whose boxes the ray meets
+  /// before t_max, roughly near ones first; visit may lower t_max.
+  template <class Visit>
+  void traverse(const Vec3& origin, const Vec3& direction, double t_max, const Visit& visit) const;
+
+ private:
+  struct Node {
+    std::array<float, 3> low, high;  ///< rounded outwards
+    std::uint32_t first = 0;         ///< leaf: first primitive; inner: first of two children
+    std::uint32_t count = 0;         ///< primitives of a leaf; 0 for an inner node
+  };
+  struct Range;
+  struct Slabs {
+    std::array<double, 3> origin, inverse;
+    double enter(const Node& node, double t_max) const;
+  };
+
+  static constexpr int kMaxDepth = 60;
+
+  void build(std::uint32_t node, const Range& range, std::span<const Bounds> bounds);
+  std::uint32_t split(const Range& range, std::span<const Bounds> bounds);
+
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> order_;
+};
+
+/// Where the ray enters the node's box, or infinity if it does not before t_max.
+inline double Bvh::Slabs::enter(const Node& node, double t_max) const {
+  double near = 0, far = t_max;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double a = (node.low[axis] - origin[axis]) * inverse[axis];
+    const double b = (node.high[axis] - origin[axis]) * inverse[axis];
+    near = std::max(near, std::min(a, b));
+    far = std::min(far, std::max(a, b));
+  }
+  return near <= far ? near : std::numeric_limits<double>::infinity();
+}
+
+template <class Visit>
+void Bvh::traverse(const Vec3& origin, const Vec3& direction, double t_max,
+                   const Visit& visit) const {
+  if (nodes_.empty()) return;
+  // A huge finite inverse instead of infinity keeps 0 * inverse from being NaN.
+  const auto invert = [](double d) { return d != 0 ? 1 / d : 1e300; };
+  const Slabs slabs{{origin.x, origin.y, origin.z},
+                    {invert(direction.x), invert(direction.y), invert(direction.z)}};
+  struct Pending {
+    std::uint32_t node;
+    double enter;
+  };
+  std::array<Pending, kMaxDepth + 4> stack;
+  std::size_t size = 0;
+  const double root = slabs.enter(nodes_[0], t_max);
+  if (root < t_max) stack[size++] = {0, root};
+  while (size > 0) {
+    const Pending pending = stack[--size];
+    if (pending.enter >= t_max) continue;
+    const Node& node = nodes_[pending.node];
+    if (node.count > 0) {
+      for (std::uint32_t i = 0; i < node.count; ++i) visit(node.first + i, t_max);
+      continue;
+    }
+    Pending near{node.first, slabs.enter(nodes_[node.first], t_max)};
+    Pending far{node.first + 1, slabs.enter(nodes_[node.first + 1], t_max)};
+    if (near.enter > far.enter) std::swap(near, far);
+    if (far.enter < t_max) stack[size++] = far;
+    if (near.enter < t_max) stack[size++] = near;
+  }
+}
+
+}  // namespace curlidar::scenery
