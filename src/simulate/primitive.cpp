@@ -25,12 +25,13 @@ struct Interval {
   Vec3 enter_normal{}, leave_normal{};
 
   bool empty() const { return enter > leave; }
+  void make_empty() { enter = kInfinity, leave = -kInfinity; }
 };
 
 /// Cuts the stretch by low <= o + t d <= high, where `axis` is the coordinate's unit vector.
 void clip_slab(Interval& interval, double o, double d, double low, double high, const Vec3& axis) {
   if (d == 0) {
-    if (o < low || o > high) interval.enter = kInfinity;
+    if (o < low || o > high) interval.make_empty();
     return;
   }
   double near = (low - o) / d;
@@ -143,11 +144,11 @@ Interval clip_arch(const Ray& ray, const Opening& opening) {
   const double c = ox * ox + oz * oz - 1;
   if (a > 0) {
     if (!solve_quadratic(a, ox * dx + oz * dz, c, interval.enter, interval.leave)) {
-      interval.enter = kInfinity;
+      interval.make_empty();
       return interval;
     }
   } else if (c > 0) {
-    interval.enter = kInfinity;
+    interval.make_empty();
     return interval;
   }
   const auto gradient = [&](double at) {

@@ -70,7 +70,7 @@ class Forest {
   void ground() const {
     constexpr int kRings = 84, kSpokes = 150;
     root_.of(0.3).sheet(kRings, kSpokes + 1, [&](int i, int j) {
-      const double r = 0.05 + kReach * std::pow(static_cast<double>(i) / (kRings - 1), 2.2);
+      const double r = kReach * std::pow(static_cast<double>(i) / (kRings - 1), 2.2);
       const double angle = kTurn * (j % kSpokes) / kSpokes;
       const double x = r * std::cos(angle), y = r * std::sin(angle);
       return Vec3{x, y, height(x, y)};
