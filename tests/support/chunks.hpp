@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <vector>
 
+#include "base/crc32c.hpp"
 #include "format/container.hpp"
 
 namespace curlidar::test {
@@ -20,6 +22,27 @@ inline std::vector<std::byte> bytes(std::initializer_list<unsigned> values) {
 inline Chunk chunk_of(ChunkType type, const std::vector<std::byte>& payload,
                       std::size_t offset = 100) {
   return {type, payload, offset};
+}
+
+/// The file with right checksums wherever its chunks are whole, so that damage to a payload reaches
+/// the payload's reader.
+inline std::vector<std::byte> with_right_checksums(ByteSpan file) {
+  std::vector<std::byte> out(file.begin(), file.end());
+  ByteReader reader(file);
+  reader.take(kHeaderSize);
+  while (reader.remaining() > 0) {
+    const std::size_t start = reader.offset();
+    reader.read<std::uint8_t>();
+    reader.take(reader.read_varint());
+    const std::size_t end = reader.offset();
+    reader.read<std::uint32_t>();
+    if (!reader.ok()) break;
+    const std::uint32_t crc = crc32c(file.subspan(start, end - start));
+    for (std::size_t i = 0; i < 4; ++i) {
+      out[end + i] = static_cast<std::byte>((crc >> (8 * i)) & 0xff);
+    }
+  }
+  return out;
 }
 
 }  // namespace curlidar::test
