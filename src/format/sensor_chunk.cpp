@@ -13,7 +13,6 @@
 namespace curlidar {
 namespace {
 
-constexpr std::uint64_t kMaxRings = 1024;
 constexpr std::uint64_t kMaxColumns = 65536;
 
 // The orders of these lists are the format's.
