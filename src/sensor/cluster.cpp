@@ -129,15 +129,7 @@ double looseness(const Histogram& h, const std::vector<double>& centres) {
   return median(shares);
 }
 
-}  // namespace
-
-std::vector<double> cluster_elevations(const Returns& returns) {
-  std::vector<double> elevations;
-  for (std::size_t i = 0; i < returns.size(); ++i) {
-    if (returns.is_far(i)) elevations.push_back(returns.elevation[i]);
-  }
-  const auto [low, high] = std::minmax_element(elevations.begin(), elevations.end());
-  if (*high - *low < 0.3 * kRadiansPerDegree) return {median(elevations)};
+std::vector<double> cluster(const std::vector<double>& elevations) {
   const Histogram h = make_histogram(elevations);
   const double mean = static_cast<double>(elevations.size()) / static_cast<double>(kBins);
   std::vector<double> best;
@@ -155,6 +147,26 @@ std::vector<double> cluster_elevations(const Returns& returns) {
   }
   std::reverse(best.begin(), best.end());
   return best;
+}
+
+}  // namespace
+
+std::vector<double> cluster_elevations(const Returns& returns) {
+  const std::vector<double>& all = returns.elevation;
+  const auto [low, high] = std::minmax_element(all.begin(), all.end());
+  if (*high - *low < 0.3 * kRadiansPerDegree) {
+    std::vector<double> values(all);
+    return {median(values)};
+  }
+  // Beams that do not start at the origin blur the clusters of near returns; but some beams may
+  // have near returns only.
+  if (std::vector<double> centres = cluster(all); !centres.empty()) return centres;
+  std::vector<double> far;
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    if (returns.is_far(i)) far.push_back(all[i]);
+  }
+  const auto [far_low, far_high] = std::minmax_element(far.begin(), far.end());
+  return *far_high > *far_low ? cluster(far) : std::vector<double>();
 }
 
 }  // namespace curlidar

@@ -35,8 +35,8 @@ void take_samples(const Returns& returns, const Labels& labels, std::vector<Cone
   }
 }
 
-/// Median angle between the sample and height = origin + slope * distance, fitted robustly.
-double fitted_spread(const Returns& returns, const Cone& cone) {
+/// Angles between the sample and height = origin + slope * distance, fitted robustly.
+void fit_cone(const Returns& returns, Cone& cone) {
   double slope = std::tan(std::clamp(cone.elevation, -1.55, 1.55));
   double origin = 0;
   const double scale = 0.05 * kRadiansPerDegree;
@@ -64,7 +64,8 @@ double fitted_spread(const Returns& returns, const Cone& cone) {
   std::vector<double> angles;
   angles.reserve(cone.sample.size());
   for (const std::uint32_t i : cone.sample) angles.push_back(std::abs(residual(i)));
-  return median(angles);
+  cone.spread = median(angles);
+  cone.tail = percentile(angles, 0.9);
 }
 
 void place_empty(const std::vector<Cone>& cones, std::vector<double>& elevations) {
@@ -107,7 +108,7 @@ std::vector<Cone> fit_cones(const Returns& returns, const Labels& labels) {
     values.clear();
     for (const std::uint32_t i : cone.sample) values.push_back(returns.elevation[i]);
     cone.elevation = median(values);
-    cone.spread = fitted_spread(returns, cone);
+    fit_cone(returns, cone);
   }
   return cones;
 }

@@ -25,6 +25,7 @@ struct Cone {
   std::vector<std::uint32_t> sample;  ///< at most 256 of the returns, far ones if there are any
   double elevation = 0;               ///< median of the sample, seen from the sensor's origin
   double spread = 0;                  ///< median angle between the sample and the cone fitted to it
+  double tail = 0;                    ///< 90th percentile of the same angle
 };
 
 /// One cone for every label. O(n).

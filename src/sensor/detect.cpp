@@ -221,21 +221,23 @@ bool try_rows(Scan& scan) {
 bool try_turns(Scan& scan) {
   std::optional<Labels> best;
   std::vector<Cone> best_cones;
-  double best_spread = 0;
-  for (const TurnStart& start : guess_turn_starts(scan.returns)) {
-    auto labels = labels_from_turns(scan.returns, start);
+  double best_tail = 0;
+  const EmptyArc empty = widest_empty_arc(scan.returns);
+  for (const double start : guess_turn_starts(scan.returns, empty)) {
+    auto labels = labels_from_turns(scan.returns, start, empty);
     if (!labels) continue;
     std::vector<Cone> cones = fit_cones(scan.returns, *labels);
     if (!are_rings(cones)) continue;
-    std::vector<double> spreads;
-    for (const Cone& cone : cones) spreads.push_back(cone.spread);
-    const double spread = median(spreads);
-    if (best && spread >= best_spread) continue;
+    // A start in the middle of the returns joins parts of two rings, which shows in the tail.
+    std::vector<double> tails;
+    for (const Cone& cone : cones) tails.push_back(cone.tail);
+    const double tail = median(tails);
+    if (best && tail >= best_tail) continue;
     best = std::move(labels);
     best_cones = std::move(cones);
-    best_spread = spread;
+    best_tail = tail;
     // As thin as beams are: no other start can be better.
-    if (spread < 0.02 * kRadiansPerDegree) break;
+    if (tail < 0.04 * kRadiansPerDegree) break;
   }
   if (!best) return false;
   accept_labels(scan, *best, best_cones, RingSource::azimuth_wraps);

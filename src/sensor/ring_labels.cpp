@@ -18,38 +18,6 @@ double angle_from(double start, double angle) {
   return d < 0 ? d + kTurn : (d >= kTurn ? d - kTurn : d);
 }
 
-/// Where the widest part of the circle without returns begins and how wide it is.
-struct EmptyArc {
-  double end = 0;  ///< azimuth of the first return after it
-  double width = 0;
-};
-
-EmptyArc widest_empty_arc(const Returns& returns) {
-  // A tenth of a degree is fine enough to find where a cropped scan begins.
-  constexpr std::size_t kSectors = 3600;
-  std::vector<double> first(kSectors, kTurn), last(kSectors, -kTurn);
-  for (const double azimuth : returns.azimuth) {
-    const double turned = azimuth + std::numbers::pi;
-    const auto sector = std::min(
-        kSectors - 1, static_cast<std::size_t>(turned / kTurn * static_cast<double>(kSectors)));
-    first[sector] = std::min(first[sector], azimuth);
-    last[sector] = std::max(last[sector], azimuth);
-  }
-  double lowest = kTurn, previous = -kTurn;
-  EmptyArc widest;
-  for (std::size_t sector = 0; sector < kSectors; ++sector) {
-    if (first[sector] > last[sector]) continue;
-    if (previous == -kTurn) {
-      lowest = first[sector];
-    } else if (first[sector] - previous > widest.width) {
-      widest = {first[sector], first[sector] - previous};
-    }
-    previous = last[sector];
-  }
-  if (lowest + kTurn - previous > widest.width) widest = {lowest, lowest + kTurn - previous};
-  return widest;
-}
-
 /// A return beside the seam may open a turn of its own at either end of the file.
 void join_strays(Labels& labels) {
   std::vector<std::size_t> sizes(labels.count, 0);
@@ -110,25 +78,57 @@ std::optional<Labels> labels_from_rows(const Cloud& cloud, const Returns& return
   return labels;
 }
 
-std::vector<TurnStart> guess_turn_starts(const Returns& returns) {
-  // KITTI's turns start at azimuth 0; others at the back or at the first return. Scans cropped to
-  // a part of the circle may have any start inside the part that is missing.
-  constexpr double kPi = std::numbers::pi;
-  const EmptyArc empty = widest_empty_arc(returns);
-  std::vector<TurnStart> starts{{0, kTurn}, {-kPi, kTurn}, {returns.azimuth[0], kTurn}};
-  if (empty.width > 0.1) starts.push_back({empty.end, kTurn - empty.width});
+EmptyArc widest_empty_arc(const Returns& returns) {
+  // A tenth of a degree is fine enough to find where a cropped scan begins.
+  constexpr std::size_t kSectors = 3600;
+  std::vector<double> first(kSectors, kTurn), last(kSectors, -kTurn);
+  for (const double azimuth : returns.azimuth) {
+    const double turned = azimuth + std::numbers::pi;
+    const auto sector = std::min(
+        kSectors - 1, static_cast<std::size_t>(turned / kTurn * static_cast<double>(kSectors)));
+    first[sector] = std::min(first[sector], azimuth);
+    last[sector] = std::max(last[sector], azimuth);
+  }
+  double lowest = kTurn, previous = -kTurn;
+  EmptyArc widest;
+  for (std::size_t sector = 0; sector < kSectors; ++sector) {
+    if (first[sector] > last[sector]) continue;
+    if (previous == -kTurn) {
+      lowest = first[sector];
+    } else if (first[sector] - previous > widest.width) {
+      widest = {first[sector], first[sector] - previous};
+    }
+    previous = last[sector];
+  }
+  if (lowest + kTurn - previous > widest.width) widest = {lowest, lowest + kTurn - previous};
+  return widest;
+}
+
+std::vector<double> guess_turn_starts(const Returns& returns, const EmptyArc& empty) {
+  // KITTI's turns start at azimuth 0; others at the back or at the first return. Those of a scan
+  // cropped to a part of the circle may start anywhere in the part that is missing.
+  std::vector<double> starts{0, -std::numbers::pi, returns.azimuth[0]};
+  if (empty.width > 0.1) starts.push_back(empty.end);
   return starts;
 }
 
-std::optional<Labels> labels_from_turns(const Returns& returns, const TurnStart& start) {
+std::optional<Labels> labels_from_turns(const Returns& returns, double start,
+                                        const EmptyArc& empty) {
+  // Angles are counted from `start` over the part of the circle that has returns.
+  const double extent = kTurn - empty.width;
+  const double arc_end = angle_from(start, empty.end);
+  const auto angle_of = [&](double azimuth) {
+    const double angle = angle_from(start, azimuth);
+    return angle >= arc_end ? angle - std::min(empty.width, arc_end) : angle;
+  };
   std::vector<std::int32_t> turns(returns.size());
   std::int32_t turn = 0, lowest = 0, highest = 0;
-  double previous = angle_from(start.azimuth, returns.azimuth[0]);
+  double previous = angle_of(returns.azimuth[0]);
   for (std::size_t i = 0; i < returns.size(); ++i) {
     // A jump of more than half of the extent is a new turn, or the way back to the last one.
-    const double angle = angle_from(start.azimuth, returns.azimuth[i]);
-    if (angle - previous < -start.extent / 2) ++turn;
-    if (angle - previous > start.extent / 2) --turn;
+    const double angle = angle_of(returns.azimuth[i]);
+    if (angle - previous < -extent / 2) ++turn;
+    if (angle - previous > extent / 2) --turn;
     lowest = std::min(lowest, turn);
     highest = std::max(highest, turn);
     if (highest - lowest >= static_cast<std::int32_t>(kMaxRings)) return std::nullopt;

@@ -20,13 +20,18 @@ std::optional<Labels> labels_from_attribute(const Cloud& cloud, const Attribute&
 /// Rows of an organised cloud, or its columns if `transposed`; nothing if there are too many.
 std::optional<Labels> labels_from_rows(const Cloud& cloud, const Returns& returns, bool transposed);
 
-/// Where the turns of a file may start, and how much of the circle they cover.
-struct TurnStart {
-  double azimuth = 0, extent = 0;  ///< radians
+/// The widest part of the circle without returns, counter-clockwise up to `end`.
+struct EmptyArc {
+  double end = 0, width = 0;  ///< radians
 };
-std::vector<TurnStart> guess_turn_starts(const Returns& returns);
+EmptyArc widest_empty_arc(const Returns& returns);
 
-/// Turns of the azimuth in file order; nothing for files in another order. O(n).
-std::optional<Labels> labels_from_turns(const Returns& returns, const TurnStart& start);
+/// Azimuths at which the turns of a file may start, the likeliest first.
+std::vector<double> guess_turn_starts(const Returns& returns, const EmptyArc& empty);
+
+/// Turns of the azimuth in file order, each from azimuth `start`; nothing for files in another
+/// order. O(n).
+std::optional<Labels> labels_from_turns(const Returns& returns, double start,
+                                        const EmptyArc& empty);
 
 }  // namespace curlidar
