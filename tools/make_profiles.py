@@ -31,10 +31,10 @@ SOURCE = "tier4/nebula (Apache-2.0), {}; beam angles are facts of the sensor"
 # name: (file, description, columns in a turn, (fov up, fov down) or None for the outermost rings,
 #        (min, max) range in metres)
 VELODYNE = {
-    "hdl64e-s2": ("calibration_HDL64e_s2.yaml", "Velodyne HDL-64E S2, one unit's calibration at 10 Hz",
-                  2083, None, (0.9, 120)),
-    "hdl64e-s3": ("calibration_HDL64e_s3.yaml", "Velodyne HDL-64E S3, one unit's calibration at 10 Hz",
-                  2083, None, (0.9, 120)),
+    "hdl64e-s2": ("calibration_HDL64e_s2.yaml", "Velodyne HDL-64E S2, one unit at 10 Hz", 2083,
+                  None, (0.9, 120)),
+    "hdl64e-s3": ("calibration_HDL64e_s3.yaml", "Velodyne HDL-64E S3, one unit at 10 Hz", 2083,
+                  None, (0.9, 120)),
     "hdl32e": ("calibration_HDL32.yaml", "Velodyne HDL-32E at 10 Hz", 2170, None, (0.9, 120)),
     "vlp16": ("calibration_VLP16.yaml", "Velodyne VLP-16 (Puck) at 10 Hz", 1808, None, (0.4, 130)),
     "vlp32c": ("calibration_VLP32.yaml", "Velodyne VLP-32C (Ultra Puck) at 10 Hz", 1808, None,
@@ -57,14 +57,14 @@ HESAI = {
 # name: (rings, fov up, fov down, description, range)
 UNIFORM = {
     f"{model}-{rings}": (rings, half, -half,
-                         f"Ouster {model.upper()}-{rings}, uniform beams over the nominal field of view; "
-                         "a metadata file of the unit is more exact", limits)
+                         f"Ouster {model.upper()}-{rings}, evenly over the nominal field of view; "
+                         "the unit's metadata is more exact", limits)
     for model, half, limits in (("os0", 45.0, (0.3, 120)), ("os1", 22.5, (0.3, 240)),
                                 ("os2", 11.25, (0.8, 480)))
     for rings in (32, 64, 128)
 }
-UNIFORM["os1-64-gen1"] = (64, 17.743, -15.594, "Ouster OS1-64 of the first generation, as in Newer College",
-                          (0.3, 120))
+UNIFORM["os1-64-gen1"] = (
+    64, 17.743, -15.594, "Ouster OS1-64 of the first generation, as in Newer College", (0.3, 120))
 
 
 def shortest(value, digits=6):
@@ -127,7 +127,8 @@ def read_npz(path):
             start = 10 + struct.unpack("<H", data[8:10])[0]
             header = ast.literal_eval(data[10:start].decode())
             assert header["descr"] == "<f8" and len(header["shape"]) == 1
-            arrays[entry.removesuffix(".npy")] = struct.unpack(f"<{header['shape'][0]}d", data[start:])
+            values = struct.unpack(f"<{header['shape'][0]}d", data[start:])
+            arrays[entry.removesuffix(".npy")] = values
     return arrays
 
 
@@ -156,17 +157,19 @@ def write_kitti(path, directory):
     data = read_npz(path)
     rings = top_to_bottom([(math.degrees(math.atan(t)), c, o, h)
                            for t, c, o, h in zip(data["T"], data["c"], data["O"], data["h"])])
-    write(directory, "hdl64e-kitti", "Velodyne HDL-64E of the KITTI car at 10 Hz, beams fitted to its scans",
-          ["Fitted to KITTI scans (each ring is a cone to a few tenths of a millimetre); azimuth offsets",
-           "are known modulo the 0.09 degree step of the encoder. The field of view is the nominal one",
-           "of the CURL paper."],
+    write(directory, "hdl64e-kitti",
+          "Velodyne HDL-64E of the KITTI car at 10 Hz, fitted to its scans",
+          ["Fitted to KITTI scans (each ring is a cone to a few tenths of a millimetre); azimuth",
+           "offsets are known modulo the 0.09 degree step of the encoder. The field of view is the",
+           "nominal one of the CURL paper."],
           2083, (2.0, -24.9), (0.9, 120), ring_table(rings))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--calibration", type=Path, required=True, help="folder of calibration files")
+    parser.add_argument("--calibration", type=Path, required=True,
+                        help="folder of calibration files")
     parser.add_argument("--kitti", type=Path, help="npz with T, O, h and c of KITTI's HDL-64E")
     parser.add_argument("--output", type=Path, default=Path("profiles"))
     options = parser.parse_args()

@@ -6,7 +6,7 @@
 namespace curlidar {
 
 /// Firings in a full turn, from the steps of azimuth within the fullest rings; 0 if there are too
-/// few returns to tell. `ring_of_return` holds labels below `rings`.
+/// few returns to tell. O(n log n).
 double columns_from_steps(const Returns& returns, const Labels& labels);
 
 /// The number that data sheets state where one is within 2 percent.

@@ -106,6 +106,49 @@ void keep_better(std::optional<SensorMatch>& best, SensorMatch next, double tole
   best->also_fits.push_back(next.profile.name);
 }
 
+/// Median distance of the returns to their beams, as a share of half the gap between beams: 0.5 by
+/// chance. Nothing if the field of view differs or rings stay empty.
+std::optional<double> share_of_gap(const SensorProfile& profile, const Returns& returns,
+                                   const std::vector<std::uint32_t>& sample) {
+  const Beams beams(profile);
+  std::vector<double> shares, angles;
+  std::vector<std::size_t> hits(beams.size(), 0);
+  std::size_t outside = 0;
+  for (const std::uint32_t i : sample) {
+    const std::uint16_t ring = beams.nearest(returns.distance[i], returns.height[i]);
+    const double angle = std::abs(beams.angle_above(ring, returns.distance[i], returns.height[i]));
+    ++hits[ring];
+    // Two extra gaps: outermost beams often stand apart.
+    if (angle > 2 * beams.half_gap(ring)) ++outside;
+    if (outside * 10 > sample.size()) return std::nullopt;
+    shares.push_back(std::min(1.0, angle / beams.half_gap(ring)));
+    angles.push_back(angle);
+  }
+  const double share = median(shares);
+  if (share > 0.36 || median(angles) > 0.15 * kRadiansPerDegree) return std::nullopt;
+  const auto empty = std::count(hits.begin(), hits.end(), std::size_t{0});
+  if (4 * static_cast<std::size_t>(empty) > beams.size()) return std::nullopt;
+  return share;
+}
+
+/// Some thousand far returns, drawn by a fixed sequence: every n-th one could always be of the same
+/// few lasers.
+std::vector<std::uint32_t> sample_of(const Returns& returns) {
+  constexpr std::size_t kSample = 4096;
+  std::vector<std::uint32_t> far;
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    if (returns.is_far(i)) far.push_back(static_cast<std::uint32_t>(i));
+  }
+  if (far.size() <= kSample) return far;
+  std::vector<std::uint32_t> sample;
+  std::uint64_t state = 0;
+  for (std::size_t k = 0; k < kSample; ++k) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    sample.push_back(far[static_cast<std::size_t>((state >> 33) % far.size())]);
+  }
+  return sample;
+}
+
 }  // namespace
 
 std::optional<SensorMatch> match_cones(const std::vector<Cone>& cones, const Returns& returns,
@@ -133,53 +176,8 @@ std::optional<SensorMatch> match_cones(const std::vector<Cone>& cones, const Ret
   return best;
 }
 
-namespace {
-
-/// Median distance of the returns to their beams, as a share of half the gap between beams: 0.5 by
-/// chance. Nothing if the field of view differs or rings stay empty.
-std::optional<double> share_of_gap(const SensorProfile& profile, const Returns& returns,
-                                   const std::vector<std::uint32_t>& sample) {
-  const Beams beams(profile);
-  std::vector<double> shares, angles;
-  std::vector<std::size_t> hits(beams.size(), 0);
-  std::size_t outside = 0;
-  for (const std::uint32_t i : sample) {
-    const std::uint16_t ring = beams.nearest(returns.distance[i], returns.height[i]);
-    const double angle = std::abs(beams.angle_above(ring, returns.distance[i], returns.height[i]));
-    ++hits[ring];
-    // Two extra gaps: outermost beams often stand apart.
-    if (angle > 2 * beams.half_gap(ring)) ++outside;
-    if (outside * 10 > sample.size()) return std::nullopt;
-    shares.push_back(std::min(1.0, angle / beams.half_gap(ring)));
-    angles.push_back(angle);
-  }
-  const double share = median(shares);
-  if (share > 0.36 || median(angles) > 0.15 * kRadiansPerDegree) return std::nullopt;
-  const auto empty = std::count(hits.begin(), hits.end(), std::size_t{0});
-  if (4 * static_cast<std::size_t>(empty) > beams.size()) return std::nullopt;
-  return share;
-}
-
-}  // namespace
-
 std::optional<SensorMatch> match_returns(const Returns& returns, double columns) {
-  constexpr std::size_t kSample = 4096;
-  std::vector<std::uint32_t> sample;
-  for (std::size_t i = 0; i < returns.size(); ++i) {
-    if (returns.is_far(i)) sample.push_back(static_cast<std::uint32_t>(i));
-  }
-  // Every stride-th return could always be of the same few lasers; a walk with a step prime to
-  // the length visits them evenly.
-  const std::size_t count = sample.size();
-  if (count > kSample) {
-    std::vector<std::uint32_t> thinned;
-    std::uint64_t state = 0;
-    for (std::size_t k = 0; k < kSample; ++k) {
-      state = state * 6364136223846793005u + 1442695040888963407u;
-      thinned.push_back(sample[static_cast<std::size_t>((state >> 33) % count)]);
-    }
-    sample = std::move(thinned);
-  }
+  const std::vector<std::uint32_t> sample = sample_of(returns);
   std::optional<SensorMatch> best;
   for (const SensorProfile& profile : builtin_profiles()) {
     if (sample.size() < 8 * profile.rings.size()) continue;

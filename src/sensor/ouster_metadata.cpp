@@ -11,6 +11,7 @@
 #include "base/try.hpp"
 #include "curlidar/sensor.hpp"
 #include "sensor/angles.hpp"
+#include "sensor/cones.hpp"
 
 namespace curlidar {
 namespace {
@@ -36,7 +37,7 @@ const json* find_key(const json& root, const char* key) {
   return nullptr;
 }
 
-Result<std::vector<double>> read_angles(const json& root, const char* key,
+Result<std::vector<double>> read_angles(const json& root, const char* key, double limit_deg,
                                         const std::string& where) {
   const json* list = find_key(root, key);
   if (list == nullptr || !list->is_array()) {
@@ -56,6 +57,9 @@ Result<std::vector<double>> read_angles(const json& root, const char* key,
     }
     if (!value.is_number()) return invalid(where, fmt::format("{} must hold numbers", key));
     out.push_back(value.get<double>());
+    if (!(std::abs(out.back()) <= limit_deg)) {
+      return invalid(where, fmt::format("{} must lie within +-{} degrees", key, limit_deg));
+    }
   }
   return out;
 }
@@ -100,8 +104,8 @@ std::string name_of(std::string_view product) {
 
 Result<SensorProfile> read_metadata(const json& root, const std::string& where) {
   if (!root.is_object()) return invalid(where, "the file must hold one JSON object");
-  CURLIDAR_TRY_ASSIGN(altitudes, read_angles(root, "beam_altitude_angles", where));
-  CURLIDAR_TRY_ASSIGN(azimuths, read_angles(root, "beam_azimuth_angles", where));
+  CURLIDAR_TRY_ASSIGN(altitudes, read_angles(root, "beam_altitude_angles", 90, where));
+  CURLIDAR_TRY_ASSIGN(azimuths, read_angles(root, "beam_azimuth_angles", 360, where));
   CURLIDAR_TRY_ASSIGN(columns, read_columns(root, where));
   if (azimuths.size() != altitudes.size()) {
     return invalid(where, fmt::format("{} altitude angles but {} azimuth angles", altitudes.size(),
@@ -118,6 +122,9 @@ Result<SensorProfile> read_metadata(const json& root, const std::string& where) 
   }
   std::stable_sort(profile.rings.begin(), profile.rings.end(),
                    [](const Ring& a, const Ring& b) { return a.elevation > b.elevation; });
+  std::vector<double> elevations = profile.elevations();
+  make_strictly_descending(elevations);
+  for (std::size_t i = 0; i < elevations.size(); ++i) profile.rings[i].elevation = elevations[i];
   profile.fov_up = profile.rings.front().elevation;
   profile.fov_down = profile.rings.back().elevation;
   profile.min_range_m = 0;
