@@ -28,7 +28,7 @@ HEADERS = {
     "render": "render",
 }
 
-SOURCE_FOLDERS = ["include", "src", "apps", "tests", "bench"]
+SOURCE_FOLDERS = ["include", "src", "apps", "tests", "bench", "fuzz", "tools"]
 MAX_LINES = 600
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 
