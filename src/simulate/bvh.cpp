@@ -9,7 +9,7 @@ namespace curlidar::scenery {
 
 namespace {
 
-constexpr std::uint32_t kLeafSize = 2;
+constexpr std::uint32_t kLeafSize = 4;
 constexpr int kBins = 16;
 
 struct Box {
@@ -64,8 +64,8 @@ void Bvh::build(std::uint32_t node, const Range& range, std::span<const Bounds> 
     box.add(as_array(bounds[order_[i]].low), as_array(bounds[order_[i]].high));
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    nodes_[node].low[axis] = round_down(box.low[axis]);
-    nodes_[node].high[axis] = round_up(box.high[axis]);
+    nodes_[node].bounds[axis] = round_down(box.low[axis]);
+    nodes_[node].bounds[axis + 3] = round_up(box.high[axis]);
   }
   if (range.count <= kLeafSize || range.depth >= kMaxDepth) {
     nodes_[node].first = range.first;

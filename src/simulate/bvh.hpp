@@ -31,13 +31,15 @@ class Bvh {
 
  private:
   struct Node {
-    std::array<float, 3> low, high;  ///< rounded outwards
-    std::uint32_t first = 0;         ///< leaf: first primitive; inner: first of two children
-    std::uint32_t count = 0;         ///< primitives of a leaf; 0 for an inner node
+    std::array<float, 6> bounds{};  ///< low x, y, z, high x, y, z, rounded outwards
+    std::uint32_t first = 0;        ///< leaf: first primitive; inner: first of two children
+    std::uint32_t count = 0;        ///< primitives of a leaf; 0 for an inner node
   };
   struct Range;
   struct Slabs {
-    std::array<double, 3> origin, inverse;
+    Slabs(const Vec3& origin, const Vec3& direction);
+    std::array<double, 3> start, inverse;
+    std::array<std::uint8_t, 3> near, far;  ///< which bound a ray of this direction meets first
     double enter(const Node& node, double t_max) const;
   };
 
@@ -50,26 +52,32 @@ class Bvh {
   std::vector<std::uint32_t> order_;
 };
 
+inline Bvh::Slabs::Slabs(const Vec3& origin, const Vec3& direction)
+    : start{origin.x, origin.y, origin.z} {
+  const std::array<double, 3> d{direction.x, direction.y, direction.z};
+  for (std::uint8_t axis = 0; axis < 3; ++axis) {
+    // A huge finite inverse instead of infinity keeps 0 * inverse from being NaN.
+    inverse[axis] = d[axis] != 0 ? 1 / d[axis] : 1e300;
+    near[axis] = static_cast<std::uint8_t>(inverse[axis] > 0 ? axis : axis + 3);
+    far[axis] = static_cast<std::uint8_t>(inverse[axis] > 0 ? axis + 3 : axis);
+  }
+}
+
 /// Where the ray enters the node's box, or infinity if it does not before t_max.
 inline double Bvh::Slabs::enter(const Node& node, double t_max) const {
-  double near = 0, far = t_max;
+  double first = 0, last = t_max;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double a = (node.low[axis] - origin[axis]) * inverse[axis];
-    const double b = (node.high[axis] - origin[axis]) * inverse[axis];
-    near = std::max(near, std::min(a, b));
-    far = std::min(far, std::max(a, b));
+    first = std::max(first, (node.bounds[near[axis]] - start[axis]) * inverse[axis]);
+    last = std::min(last, (node.bounds[far[axis]] - start[axis]) * inverse[axis]);
   }
-  return near <= far ? near : std::numeric_limits<double>::infinity();
+  return first <= last ? first : std::numeric_limits<double>::infinity();
 }
 
 template <class Visit>
 void Bvh::traverse(const Vec3& origin, const Vec3& direction, double t_max,
                    const Visit& visit) const {
   if (nodes_.empty()) return;
-  // A huge finite inverse instead of infinity keeps 0 * inverse from being NaN.
-  const auto invert = [](double d) { return d != 0 ? 1 / d : 1e300; };
-  const Slabs slabs{{origin.x, origin.y, origin.z},
-                    {invert(direction.x), invert(direction.y), invert(direction.z)}};
+  const Slabs slabs(origin, direction);
   struct Pending {
     std::uint32_t node;
     double enter;
