@@ -174,7 +174,7 @@ class Street {
   void parked_cars(double side) {
     for (double x = kStart + 3; x < kEnd - 6; x += 5.6) {
       if (near_side_street(x, 8) || random_.chance(0.38)) continue;
-      if (std::abs(x) < 3 && side < 0) continue;  // room to breathe beside the sensor
+      if (std::abs(x) < 6 && side < 0) continue;  // room to breathe beside the sensor
       const double px = x + random_.uniform(-0.3, 0.3);
       const double y = side * (4.45 + random_.uniform(-0.12, 0.12));
       const double heading = side < 0 ? 0 : std::numbers::pi;
