@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cloud files. Formats are told by content first, then by extension.
+//
+// Positions are kept as double with the source's floating-point type beside them (integers of more
+// than 16 bits become float64; 64-bit ones are rounded to it); all other fields become attributes
+// of their own type, bit by bit. Writers use the position type again.
 #pragma once
 
 #include <cstddef>
@@ -16,12 +20,25 @@
 namespace curlidar {
 
 enum class CloudFormat {
-  pcd,      ///< PCL's PCD: ascii, binary, binary_compressed
-  ply,      ///< ascii, binary little and big endian
-  kitti,    ///< .bin: float32 x y z intensity
-  nuscenes, ///< .pcd.bin: float32 x y z intensity ring
-  npy,      ///< NumPy N x 3..k array or structured array with x, y, z fields
-  csv,      ///< .csv / .xyz / .txt: text columns, optional header
+  /// PCL's PCD: ascii, binary, binary_compressed. Holds everything: layout, all types, components,
+  /// metadata (as comments; "viewpoint" in its own line, the identity is left out).
+  pcd,
+  /// Ascii, binary little and big endian. Holds everything but 64-bit integers; components as
+  /// name_0, name_1, ...; metadata as comments. List properties of vertices have no place in a
+  /// cloud: they are passed over and named in the metadata key "ply_lists_not_read".
+  ply,
+  /// .bin: float32 x y z intensity. Written intensity is converted; a missing one is 0.
+  kitti,
+  /// .pcd.bin: float32 x y z intensity ring. Written as KITTI.
+  nuscenes,
+  /// NumPy N x k or H x W x k numbers: x y z, then intensity (k = 4), intensity and ring (k = 5) or
+  /// column3, column4, ... (k > 5); or N or H x W structures with fields x, y and z. Written plain
+  /// if that gives names and types back, else structured. No metadata.
+  npy,
+  /// .csv / .xyz / .txt: text columns, optional header; unnamed columns as in npy. Text has no
+  /// types: coordinates are float64, columns of whole numbers int64 or uint64, others float64.
+  /// Components are split into name_0, name_1, ...; no layout, no metadata.
+  csv,
 };
 
 const char* to_string(CloudFormat format);
@@ -47,7 +64,8 @@ struct WriteOptions {
 };
 
 /// Reads a cloud; "-" is standard input. Errors name the file, the place and the reason.
-/// Memory is bounded by a small multiple of the file's size, whatever its header claims.
+/// Memory is bounded by a small multiple of the file's size, whatever its header claims; of what it
+/// unpacks to for binary_compressed PCD, which is at most 88 times as much.
 Result<Cloud> read_cloud(const std::string& path, const ReadOptions& options = {});
 
 /// Parses a cloud from bytes; `name` is used for messages and for telling the format.
