@@ -105,6 +105,7 @@ Result<Cloud> project(const Cloud& cloud, const Detection& detection,
                       const ProjectSettings& settings, ProjectionCounts* counts) {
   CURLIDAR_TRY(check(settings));
   CURLIDAR_TRY(validate(detection.sensor));
+  if (cloud.size() == 0) return Error{ErrorCode::invalid_argument, "the cloud has no points"};
   if (detection.ring_of_point.size() != cloud.size()) {
     return Error{ErrorCode::invalid_argument,
                  "the detection belongs to another cloud: it has a different number of points"};
@@ -116,7 +117,7 @@ Result<Cloud> project(const Cloud& cloud, const Detection& detection,
                        settings.row_rule, settings.min_range_m, max_range, {}, local);
   std::vector<std::uint32_t> sources(image.source);
   std::replace(sources.begin(), sources.end(), kNoPoint, 0u);
-  Cloud out = cloud.size() == 0 ? Cloud{} : select(cloud, sources);
+  Cloud out = select(cloud, sources);
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t row = 0; row < image.lattice.rows(); ++row) {
     for (std::size_t column = 0; column < image.lattice.columns(); ++column) {
