@@ -65,12 +65,13 @@ LocalDirection LocalFrame::local(const SinCos& elevation, const SinCos& half) co
 }
 
 PatchBasis::PatchBasis(std::vector<LocalDirection> cells) : cells_(std::move(cells)) {
+  double tangent = 0, down = 0;
   for (const LocalDirection& d : cells_) {
-    tangent_scale_ = std::max({cells_.data() == &d ? 0 : tangent_scale_, std::abs(d.east), std::abs(d.north)});
-    down_scale_ = std::max(cells_.data() == &d ? 0 : down_scale_, d.down);
+    tangent = std::max({tangent, std::abs(d.east), std::abs(d.north)});
+    down = std::max(down, d.down);
   }
-  if (tangent_scale_ == 0) tangent_scale_ = 1;
-  if (down_scale_ == 0) down_scale_ = 1;
+  if (tangent > 0) tangent_scale_ = tangent;  // a patch of one cell has no extent
+  if (down > 0) down_scale_ = down;
   add_degree();
 }
 
