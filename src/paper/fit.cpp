@@ -77,7 +77,7 @@ struct Samples {
 /// Number of functions used at a degree for a number of samples.
 std::size_t functions_for(PatchBasis& basis, std::size_t degree, std::size_t samples) {
   basis.extend(degree);
-  return std::min(basis.functions(degree), samples);
+  return std::min({basis.functions(degree), samples, kMaxPatchFunctions});
 }
 
 std::size_t choose_degree(PatchBasis& basis, std::span<const double> ranges,
@@ -94,7 +94,8 @@ std::size_t choose_degree(PatchBasis& basis, std::span<const double> ranges,
     const double total = weight * training + (1 - weight) * testing;
     if (settings.stop_on_total_error && degree > 1 && total > previous_total) return degree - 1;
     previous_total = total;
-    const bool exhausted = count == samples.training.size() || basis.complete();
+    const bool exhausted = count == samples.training.size() || count == kMaxPatchFunctions ||
+                           (basis.complete() && count == basis.cells());
     if (exhausted || degree >= settings.max_degree) break;
   }
   return degree;
@@ -112,8 +113,9 @@ PatchFit fit_patch(PatchBasis& basis, std::span<const double> ranges,
   const Samples samples(ranges, roles);
   if (samples.all.empty()) return {};
   PatchFit fit;
-  fit.degree = static_cast<std::uint32_t>(choose_degree(basis, ranges, samples, settings));
-  const std::size_t count = functions_for(basis, fit.degree, samples.all.size());
+  const std::size_t degree = choose_degree(basis, ranges, samples, settings);
+  const std::size_t count = functions_for(basis, degree, samples.all.size());
+  while (basis.functions(fit.degree) < count) ++fit.degree;
   fit.coefficients = solve(basis, ranges, samples.all, count);
   for (double& c : fit.coefficients) c = static_cast<double>(static_cast<float>(c));
   return fit;

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "curlidar/settings.hpp"
+
+#include <array>
+#include <string>
+
+namespace curlidar {
+namespace {
+
+struct NamedPreset {
+  std::string_view name;
+  PaperSettings (*make)();
+};
+
+PaperSettings indoor() {
+  PaperSettings s;
+  s.min_range_m = 1;
+  s.max_range = {};
+  s.cliffs = {0.1, 0.1, 0.1414};
+  s.accept_m = 0.1;
+  return s;
+}
+
+PaperSettings newer_college() {
+  PaperSettings s;
+  s.min_range_m = 3;
+  s.max_range = {};
+  s.cliffs = {5, 2, 5.385};
+  return s;
+}
+
+constexpr std::array<NamedPreset, 4> kPresets{{
+    {"outdoor", [] { return PaperSettings{}; }},
+    {"indoor", indoor},
+    {"newer-college", newer_college},
+    {"superrso", newer_college},
+}};
+
+constexpr std::array<Profile, 3> kProfiles{Profile::paper, Profile::paper_1to1,
+                                           Profile::paper_global};
+
+}  // namespace
+
+const char* to_string(Profile profile) {
+  switch (profile) {
+    case Profile::paper: return "paper";
+    case Profile::paper_1to1: return "paper-1to1";
+    case Profile::paper_global: return "paper-global";
+  }
+  return "unknown";
+}
+
+Result<Profile> profile_by_name(std::string_view name) {
+  for (const Profile profile : kProfiles) {
+    if (name == to_string(profile)) return profile;
+  }
+  return Error{ErrorCode::invalid_argument, "unknown profile '" + std::string(name) +
+                                                "'; known: paper, paper-1to1, paper-global"};
+}
+
+std::vector<std::string> paper_preset_names() {
+  std::vector<std::string> names;
+  for (const NamedPreset& preset : kPresets) names.emplace_back(preset.name);
+  return names;
+}
+
+Result<PaperSettings> paper_preset(std::string_view name) {
+  for (const NamedPreset& preset : kPresets) {
+    if (preset.name == name) return preset.make();
+  }
+  return Error{ErrorCode::invalid_argument,
+               "unknown preset '" + std::string(name) +
+                   "'; known: outdoor, indoor, newer-college, superrso"};
+}
+
+PaperSettings for_profile(PaperSettings settings, Profile profile) {
+  if (profile == Profile::paper_1to1) {
+    settings.upsample_rows = settings.upsample_columns = 1;
+    settings.overlap = 0;
+    settings.accept_m = 0.01;
+    settings.stop_on_total_error = false;
+  }
+  return settings;
+}
+
+}  // namespace curlidar
