@@ -76,7 +76,18 @@ PatchBasis::PatchBasis(std::vector<LocalDirection> cells) : cells_(std::move(cel
 }
 
 void PatchBasis::extend(std::size_t degree) {
-  while (this->degree() < degree) add_degree();
+  while (this->degree() < degree && !complete()) add_degree();
+}
+
+std::size_t PatchBasis::degree_with(std::size_t count) {
+  std::size_t wanted = 0;
+  for (; functions(wanted) < count; ++wanted) {
+    if (wanted == degree()) {
+      if (complete()) break;
+      add_degree();
+    }
+  }
+  return wanted;
 }
 
 void PatchBasis::add_degree() {
@@ -84,7 +95,7 @@ void PatchBasis::add_degree() {
   std::size_t polynomial = degree * degree;
   for_each_polynomial(degree, [&](const Polynomial& p) {
     const std::size_t index = polynomial++;
-    if (complete()) return;
+    if (full()) return;
     std::vector<double> column(cells_.size());
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       const LocalDirection& d = cells_[i];

@@ -34,6 +34,11 @@ class LocalFrame {
   SinCos centre_;
 };
 
+/// Bounds on a patch: they keep the cost of a patch finite on both sides of a file. Degree 24 on a
+/// patch of a few degrees resolves waves far finer than its cells.
+inline constexpr std::size_t kMaxPatchFunctions = 256;
+inline constexpr std::size_t kMaxPatchDegree = 24;
+
 /// Number of real spherical harmonics up to a degree.
 constexpr std::size_t harmonics_up_to(std::size_t degree) { return (degree + 1) * (degree + 1); }
 
@@ -50,23 +55,30 @@ class PatchBasis {
   explicit PatchBasis(std::vector<LocalDirection> cells);
 
   std::size_t cells() const { return cells_.size(); }
-  /// Makes the functions of all degrees up to `degree` available. O(cells * functions^2).
+  /// Makes the functions of all degrees up to `degree` available, as far as the bounds allow.
+  /// O(cells * functions^2).
   void extend(std::size_t degree);
+  /// The lowest degree with at least `count` functions, made available; the highest possible one
+  /// if there is none.
+  std::size_t degree_with(std::size_t count);
   /// Highest degree available.
   std::size_t degree() const { return ends_.size() - 1; }
   /// Functions up to a degree (at most harmonics_up_to(degree)).
   std::size_t functions(std::size_t degree) const { return ends_[degree]; }
-  /// Whether degrees above the available ones add nothing: there are as many functions as cells.
-  bool complete() const { return columns_.size() == cells_.size(); }
+  /// Whether degrees above the available ones add nothing.
+  bool complete() const { return full() || degree() >= kMaxPatchDegree; }
 
   /// Values of function k at all nominal cells.
   const std::vector<double>& values(std::size_t k) const { return columns_[k]; }
 
-  /// Coefficients of the basis functions (the first size() of them) as coefficients of the local
+  /// Coefficients of the first basis functions (at most functions(degree) of them) as coefficients of the local
   /// polynomials of degree `degree`, in evaluate_local's order and units.
   std::vector<double> to_local(std::span<const double> coefficients, std::size_t degree) const;
 
  private:
+  bool full() const {
+    return columns_.size() >= cells_.size() || columns_.size() >= kMaxPatchFunctions;
+  }
   void add_degree();
 
   std::vector<LocalDirection> cells_;

@@ -77,7 +77,7 @@ struct Samples {
 /// Number of functions used at a degree for a number of samples.
 std::size_t functions_for(PatchBasis& basis, std::size_t degree, std::size_t samples) {
   basis.extend(degree);
-  return std::min({basis.functions(degree), samples, kMaxPatchFunctions});
+  return std::min(basis.functions(std::min(degree, basis.degree())), samples);
 }
 
 std::size_t choose_degree(PatchBasis& basis, std::span<const double> ranges,
@@ -94,8 +94,8 @@ std::size_t choose_degree(PatchBasis& basis, std::span<const double> ranges,
     const double total = weight * training + (1 - weight) * testing;
     if (settings.stop_on_total_error && degree > 1 && total > previous_total) return degree - 1;
     previous_total = total;
-    const bool exhausted = count == samples.training.size() || count == kMaxPatchFunctions ||
-                           (basis.complete() && count == basis.cells());
+    const bool exhausted = count == samples.training.size() ||
+                           (basis.complete() && degree >= basis.degree());
     if (exhausted || degree >= settings.max_degree) break;
   }
   return degree;
@@ -115,7 +115,7 @@ PatchFit fit_patch(PatchBasis& basis, std::span<const double> ranges,
   PatchFit fit;
   const std::size_t degree = choose_degree(basis, ranges, samples, settings);
   const std::size_t count = functions_for(basis, degree, samples.all.size());
-  while (basis.functions(fit.degree) < count) ++fit.degree;
+  fit.degree = static_cast<std::uint32_t>(basis.degree_with(count));
   fit.coefficients = solve(basis, ranges, samples.all, count);
   for (double& c : fit.coefficients) c = static_cast<double>(static_cast<float>(c));
   return fit;

@@ -12,9 +12,6 @@
 
 namespace curlidar {
 
-/// Most functions a patch may have; keeps the cost of a patch bounded on both sides of a file.
-inline constexpr std::size_t kMaxPatchFunctions = 256;
-
 /// The field of one patch. Without coefficients nothing is represented.
 struct PatchFit {
   std::uint32_t degree = 0;  ///< the lowest degree that has this many functions

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "paper/patch_field.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -24,8 +25,10 @@ PatchField::PatchField(const PaperModel& model)
         if (grid_.window(patch_row, patch_column).cells() != basis.cells()) {
           basis = grid_.make_basis(patch_row, patch_column);
         }
-        basis.extend(fit.degree);
-        const std::vector<double> local = basis.to_local(fit.coefficients, fit.degree);
+        const std::size_t degree = basis.degree_with(fit.coefficients.size());
+        const std::size_t usable = std::min(fit.coefficients.size(), basis.functions(degree));
+        const std::vector<double> local =
+            basis.to_local(std::span(fit.coefficients).first(usable), degree);
         coefficients_.insert(coefficients_.end(), local.begin(), local.end());
       }
       begin_.push_back(coefficients_.size());

@@ -94,7 +94,7 @@ Status validate(const PaperSettings& s) {
   const double height = s.patch * s.upsample_rows + 2.0 * s.overlap;
   const double width = s.patch * s.upsample_columns + 2.0 * s.overlap;
   CURLIDAR_TRY(check_number("the number of cells in a patch with its overlap", height * width, 1,
-                            4096));
+                            2048));
   CURLIDAR_TRY(check_number("the maximum degree", s.max_degree, 1, 1000));
   CURLIDAR_TRY(check_number("the accepted error", s.accept_m, 0, 1e6));
   CURLIDAR_TRY(check_number("the rejected error", s.reject_m, 0, 1e6));

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/try.hpp"
+#include "codec/field_chunks.hpp"
+#include "curlidar/codec.hpp"
+#include "format/attributes_chunk.hpp"
+#include "format/metadata_chunk.hpp"
+#include "format/parameters_chunk.hpp"
+#include "format/sensor_chunk.hpp"
+#include "paper/global_fit.hpp"
+#include "paper/patch_field.hpp"
+
+namespace curlidar {
+namespace {
+
+Result<std::shared_ptr<const Field>> read_field(const std::vector<Chunk>& chunks,
+                                                const Parameters& parameters,
+                                                const Lattice& lattice, CellMasks masks,
+                                                const DecodeLimits& limits, DecodedScan& scan) {
+  if (parameters.profile == Profile::paper_global) {
+    CURLIDAR_TRY_ASSIGN(chunk, require_chunk(chunks, ChunkType::global));
+    CURLIDAR_TRY_ASSIGN(coefficients, read_global(chunk, parameters.paper.global_degree));
+    scan.coefficients = coefficients.size();
+    scan.patches = 1;
+    return std::shared_ptr<const Field>(std::make_shared<GlobalField>(
+        GlobalModel{lattice, parameters.paper, std::move(masks), std::move(coefficients)}));
+  }
+  CURLIDAR_TRY_ASSIGN(chunk, require_chunk(chunks, ChunkType::patches));
+  const PatchGrid grid(lattice, parameters.paper.upsample_rows, parameters.paper.upsample_columns,
+                       parameters.paper.patch, parameters.paper.overlap);
+  CURLIDAR_TRY_ASSIGN(patches, read_patches(chunk, grid, limits.max_bytes));
+  for (const PatchFit& patch : patches) {
+    scan.coefficients += patch.coefficients.size();
+    scan.patches += patch.coefficients.empty() ? 0 : 1;
+  }
+  return std::shared_ptr<const Field>(std::make_shared<PatchField>(
+      PaperModel{lattice, parameters.paper, std::move(masks), std::move(patches)}));
+}
+
+}  // namespace
+
+Result<DecodedScan> decode(std::span<const std::byte> bytes, const DecodeLimits& limits) {
+  CURLIDAR_TRY_ASSIGN(chunks, read_container(bytes));
+  CURLIDAR_TRY_ASSIGN(sensor_chunk, require_chunk(chunks, ChunkType::sensor));
+  CURLIDAR_TRY_ASSIGN(sensor, read_sensor(sensor_chunk));
+  CURLIDAR_TRY_ASSIGN(parameters_chunk, require_chunk(chunks, ChunkType::parameters));
+  CURLIDAR_TRY_ASSIGN(parameters, read_parameters(parameters_chunk));
+  if (const Status status = validate(parameters.paper); !status) {
+    return Error{ErrorCode::corrupt, "parameters chunk: " + status.error().message};
+  }
+  const PaperSettings& settings = parameters.paper;
+  const Lattice lattice = make_lattice(
+      {settings.row_rule, settings.rows, settings.columns, settings.min_range_m, settings.max_range},
+      sensor);
+  if (lattice.cells() > limits.max_cells) {
+    return Error{ErrorCode::limit_exceeded,
+                 fmt::format("the file's lattice has {} x {} cells, more than the {} allowed",
+                             lattice.rows(), lattice.columns(), limits.max_cells)};
+  }
+  CURLIDAR_TRY_ASSIGN(masks, read_masks(chunks, lattice));
+  DecodedScan scan;
+  scan.profile = parameters.profile;
+  scan.sensor = std::move(sensor);
+  scan.settings = settings;
+  scan.coded_returns =
+      static_cast<std::size_t>(std::count(masks.point.begin(), masks.point.end(), 1));
+  if (const Chunk* chunk = find_chunk(chunks, ChunkType::attributes)) {
+    CURLIDAR_TRY_ASSIGN(attributes,
+                        read_attributes(*chunk, scan.coded_returns, limits.max_bytes));
+    scan.attributes = std::move(attributes);
+  }
+  if (const Chunk* chunk = find_chunk(chunks, ChunkType::metadata)) {
+    CURLIDAR_TRY_ASSIGN(metadata, read_metadata(*chunk));
+    scan.metadata = std::move(metadata);
+  }
+  CURLIDAR_TRY_ASSIGN(field,
+                      read_field(chunks, parameters, lattice, std::move(masks), limits, scan));
+  scan.field = std::move(field);
+  return scan;
+}
+
+}  // namespace curlidar
