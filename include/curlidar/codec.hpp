@@ -41,7 +41,7 @@ struct EncodeReport {
   std::size_t points_in = 0;     ///< returns of the input
   std::size_t points_coded = 0;  ///< returns that a plain decode gives back
   std::size_t bytes = 0;
-  double bits_per_point = 0;     ///< of points_in, everything counted
+  double bits_per_point = 0;  ///< of points_in, everything counted
   ProjectionCounts projection;
   std::size_t points_upsampled = 0;  ///< samples after upsampling and denoising
   std::size_t coefficients = 0;
@@ -63,7 +63,7 @@ Result<Encoded> encode(const Cloud& cloud, const EncodeSettings& settings = {},
 
 /// Caps on what a file may make the decoder allocate.
 struct DecodeLimits {
-  std::uint64_t max_cells = 1u << 26;  ///< rows * columns of the coded lattice
+  std::uint64_t max_cells = 1u << 26;    ///< rows * columns of the coded lattice
   std::uint64_t max_bytes = 1ull << 32;  ///< total of unpacked chunks
 };
 
@@ -85,9 +85,9 @@ struct DecodedScan {
 Result<DecodedScan> decode(std::span<const std::byte> bytes, const DecodeLimits& limits = {});
 
 struct ReconstructSettings {
-  double rows = 1;     ///< R_row: factor on the coded lattice's rows, may be fractional, > 0
-  double columns = 1;  ///< R_col
-  bool masks = true;   ///< apply point grid and cliffs; off gives every cell a point
+  double rows = 1;         ///< R_row: factor on the coded lattice's rows, may be fractional, > 0
+  double columns = 1;      ///< R_col
+  bool masks = true;       ///< apply point grid and cliffs; off gives every cell a point
   bool organised = false;  ///< keep empty cells as NaN
   std::size_t threads = 1;
   std::uint64_t max_points = 1ull << 31;  ///< refuse larger grids

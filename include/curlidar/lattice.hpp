@@ -16,8 +16,7 @@ class Lattice {
  public:
   /// `rows` elevations evenly spaced from fov_up (row 0) to fov_down (last row), both included:
   /// the paper's grid.
-  static Lattice uniform(std::uint32_t rows, std::uint32_t columns, double fov_up,
-                         double fov_down);
+  static Lattice uniform(std::uint32_t rows, std::uint32_t columns, double fov_up, double fov_down);
   /// One row per elevation, strictly descending (radians), at least one.
   static Lattice from_rings(std::vector<double> elevations, std::uint32_t columns);
 

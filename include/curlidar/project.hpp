@@ -34,11 +34,11 @@ struct ProjectSettings {
 /// Where every return went. The fields add up to `returns`.
 struct ProjectionCounts {
   std::size_t returns = 0;
-  std::size_t kept = 0;           ///< cells filled
-  std::size_t outliers = 0;       ///< dropped by the outlier filter before projection
-  std::size_t out_of_range = 0;   ///< nearer than min or beyond max range
-  std::size_t out_of_fov = 0;     ///< above or below the nominal field of view
-  std::size_t collided = 0;       ///< another return, nearer the cell's centre, holds the cell
+  std::size_t kept = 0;          ///< cells filled
+  std::size_t outliers = 0;      ///< dropped by the outlier filter before projection
+  std::size_t out_of_range = 0;  ///< nearer than min or beyond max range
+  std::size_t out_of_fov = 0;    ///< above or below the nominal field of view
+  std::size_t collided = 0;      ///< another return, nearer the cell's centre, holds the cell
 };
 
 /// Organised rows x columns cloud, NaN in empty cells, attributes of the winning returns.

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
-#include <string>
 
 #include "curlidar/project.hpp"
 #include "curlidar/result.hpp"
@@ -23,32 +23,32 @@ Result<Profile> profile_by_name(std::string_view name);
 
 /// Distances between neighbouring returns above which the surface is taken to be broken.
 struct CliffThresholds {
-  double row_m = 2.0;       ///< to the previous row, same column
-  double column_m = 0.2;    ///< to the previous column, same row
-  double diagonal_m = 2.01; ///< to the diagonal neighbour
+  double row_m = 2.0;        ///< to the previous row, same column
+  double column_m = 0.2;     ///< to the previous column, same row
+  double diagonal_m = 2.01;  ///< to the diagonal neighbour
 };
 
 /// Parameters of the paper's pipeline (its Table I and notes on its code).
 struct PaperSettings {
   RowRule row_rule = RowRule::uniform;
-  std::uint32_t rows = 0;         ///< L; 0 = the sensor's ring count
-  std::uint32_t columns = 1024;   ///< N_h
+  std::uint32_t rows = 0;        ///< L; 0 = the sensor's ring count
+  std::uint32_t columns = 1024;  ///< N_h
   double min_range_m = 5;
   RangeLimit max_range{0, 90};
-  double outlier_radius_m = 1;         ///< 0 switches the outlier filter off
+  double outlier_radius_m = 1;           ///< 0 switches the outlier filter off
   std::uint32_t outlier_min_points = 7;  ///< neighbours within the radius, itself included
 
-  std::uint32_t upsample_rows = 2;     ///< S_row, whole number >= 1
-  std::uint32_t upsample_columns = 2;  ///< S_col
-  double refused_triangle_share = 0.1; ///< hits on the largest triangles by area are refused
+  std::uint32_t upsample_rows = 2;      ///< S_row, whole number >= 1
+  std::uint32_t upsample_columns = 2;   ///< S_col
+  double refused_triangle_share = 0.1;  ///< hits on the largest triangles by area are refused
   CliffThresholds cliffs;
 
-  std::uint32_t patch = 4;        ///< P_r, in original cells, both ways
-  std::uint32_t overlap = 2;      ///< extended cells on every side, in upsampled cells
-  std::uint32_t max_degree = 100; ///< of a patch
-  double accept_m = 0.5;          ///< a degree is accepted at this mean training error
-  double reject_m = 0.5;          ///< samples this far off are removed after the first pass
-  double k = 9;                   ///< degree at which training and testing errors weigh the same
+  std::uint32_t patch = 4;          ///< P_r, in original cells, both ways
+  std::uint32_t overlap = 2;        ///< extended cells on every side, in upsampled cells
+  std::uint32_t max_degree = 100;   ///< of a patch
+  double accept_m = 0.5;            ///< a degree is accepted at this mean training error
+  double reject_m = 0.5;            ///< samples this far off are removed after the first pass
+  double k = 9;                     ///< degree at which training and testing errors weigh the same
   bool stop_on_total_error = true;  ///< stop when the weighted error E_t rises
 
   std::uint32_t global_degree = 64;  ///< of Profile::paper_global

@@ -52,9 +52,9 @@ Result<DecodedScan> decode(std::span<const std::byte> bytes, const DecodeLimits&
     return Error{ErrorCode::corrupt, "parameters chunk: " + status.error().message};
   }
   const PaperSettings& settings = parameters.paper;
-  const Lattice lattice = make_lattice(
-      {settings.row_rule, settings.rows, settings.columns, settings.min_range_m, settings.max_range},
-      sensor);
+  const Lattice lattice = make_lattice({settings.row_rule, settings.rows, settings.columns,
+                                        settings.min_range_m, settings.max_range},
+                                       sensor);
   if (lattice.cells() > limits.max_cells) {
     return Error{ErrorCode::limit_exceeded,
                  fmt::format("the file's lattice has {} x {} cells, more than the {} allowed",
@@ -68,8 +68,7 @@ Result<DecodedScan> decode(std::span<const std::byte> bytes, const DecodeLimits&
   scan.coded_returns =
       static_cast<std::size_t>(std::count(masks.point.begin(), masks.point.end(), 1));
   if (const Chunk* chunk = find_chunk(chunks, ChunkType::attributes)) {
-    CURLIDAR_TRY_ASSIGN(attributes,
-                        read_attributes(*chunk, scan.coded_returns, limits.max_bytes));
+    CURLIDAR_TRY_ASSIGN(attributes, read_attributes(*chunk, scan.coded_returns, limits.max_bytes));
     scan.attributes = std::move(attributes);
   }
   if (const Chunk* chunk = find_chunk(chunks, ChunkType::metadata)) {

@@ -32,8 +32,8 @@ Result<Prepared> prepare(const Cloud& cloud, const EncodeSettings& settings) {
     return Error{ErrorCode::invalid_argument,
                  "the cloud has no return: every point is (0, 0, 0) or not finite"};
   }
-  CURLIDAR_TRY_ASSIGN(detection, settings.sensor ? assign_rings(cloud, *settings.sensor)
-                                                 : detect_sensor(cloud));
+  CURLIDAR_TRY_ASSIGN(
+      detection, settings.sensor ? assign_rings(cloud, *settings.sensor) : detect_sensor(cloud));
   if (detection.sensor.pattern == ScanPattern::limited_field) {
     return Error{ErrorCode::unsupported,
                  "the scan comes from a limited-field scanner, which the paper profiles cannot "
@@ -44,9 +44,9 @@ Result<Prepared> prepare(const Cloud& cloud, const EncodeSettings& settings) {
 }
 
 /// The attributes to keep, of the coded returns in raster order.
-Result<std::vector<Attribute>> choose_attributes(const Cloud& cloud,
-                                                 const std::optional<std::vector<std::string>>& names,
-                                                 const RangeImage& image, const CellMasks& masks) {
+Result<std::vector<Attribute>> choose_attributes(
+    const Cloud& cloud, const std::optional<std::vector<std::string>>& names,
+    const RangeImage& image, const CellMasks& masks) {
   Cloud chosen;
   chosen.positions = cloud.positions;
   if (!names) chosen.attributes = cloud.attributes;
@@ -147,7 +147,8 @@ Result<Encoded> encode(const Cloud& cloud, const EncodeSettings& settings,
   report.projection = stages.counts;
   report.points_upsampled = stages.samples.count();
   report.bytes = out.bytes.size();
-  report.bits_per_point = 8.0 * static_cast<double>(report.bytes) / static_cast<double>(report.points_in);
+  report.bits_per_point =
+      8.0 * static_cast<double>(report.bytes) / static_cast<double>(report.points_in);
   report.cp_paper_percent =
       cp_paper(report.coefficients, stages.image.lattice.cells(), stages.counts.kept);
   if (progress) progress("write", 1);
@@ -169,8 +170,8 @@ Result<Mesh> polar_mesh(const Cloud& cloud, const EncodeSettings& settings) {
 
 Result<Upsampled> upsample_scan(const Cloud& cloud, const EncodeSettings& settings) {
   CURLIDAR_TRY_ASSIGN(prepared, prepare(cloud, settings));
-  PaperStages stages = run_stages(cloud, prepared.detection, prepared.settings,
-                                  {.threads = settings.threads}, {});
+  PaperStages stages =
+      run_stages(cloud, prepared.detection, prepared.settings, {.threads = settings.threads}, {});
   const SampleImage& samples = stages.samples;
   Upsampled out;
   out.rows = samples.rows;

@@ -84,7 +84,8 @@ Result<std::vector<PatchFit>> read_patches(const Chunk& chunk, const PatchGrid& 
     total += count;
   }
   if (total > max_bytes / sizeof(double)) {
-    return reader.error(ErrorCode::limit_exceeded, "the coefficients take more memory than allowed");
+    return reader.error(ErrorCode::limit_exceeded,
+                        "the coefficients take more memory than allowed");
   }
   CURLIDAR_TRY_ASSIGN(coefficients, unpack_numbers<float>(reader, "coefficients", total));
   CURLIDAR_TRY(reader.finish());

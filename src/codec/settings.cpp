@@ -43,9 +43,12 @@ constexpr std::array<Profile, 3> kProfiles{Profile::paper, Profile::paper_1to1,
 
 const char* to_string(Profile profile) {
   switch (profile) {
-    case Profile::paper: return "paper";
-    case Profile::paper_1to1: return "paper-1to1";
-    case Profile::paper_global: return "paper-global";
+    case Profile::paper:
+      return "paper";
+    case Profile::paper_1to1:
+      return "paper-1to1";
+    case Profile::paper_global:
+      return "paper-global";
   }
   return "unknown";
 }

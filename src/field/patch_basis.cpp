@@ -51,11 +51,13 @@ double mean_product(const std::vector<double>& a, const std::vector<double>& b) 
 
 }  // namespace
 
-SinCos SinCos::of(double angle) { return {std::sin(angle), std::cos(angle)}; }
+SinCos SinCos::of(double angle) {
+  return {std::sin(angle), std::cos(angle)};
+}
 
 LocalDirection LocalFrame::local(const SinCos& elevation, const SinCos& half) const {
-  const double sine = 2 * half.sin * half.cos;      // of the azimuth difference
-  const double versine = 2 * half.sin * half.sin;   // one minus its cosine
+  const double sine = 2 * half.sin * half.cos;     // of the azimuth difference
+  const double versine = 2 * half.sin * half.sin;  // one minus its cosine
   const double sin_up = elevation.sin * centre_.cos - elevation.cos * centre_.sin;
   const double cos_up = elevation.cos * centre_.cos + elevation.sin * centre_.sin;
   // 1 - cos(a) = sin(a)^2 / (1 + cos(a)) keeps its digits for the small angles of a patch.
@@ -99,8 +101,8 @@ void PatchBasis::add_degree() {
     std::vector<double> column(cells_.size());
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       const LocalDirection& d = cells_[i];
-      column[i] = value_of(
-          p, {d.east / tangent_scale_, d.north / tangent_scale_, d.down / down_scale_});
+      column[i] =
+          value_of(p, {d.east / tangent_scale_, d.north / tangent_scale_, d.down / down_scale_});
     }
     const double before = std::sqrt(mean_product(column, column));
     std::vector<double> weights(columns_.size() + 1, 0);
@@ -146,7 +148,8 @@ double evaluate_local(std::span<const double> a, const LocalDirection& d) {
   // zeta^m for the orders met so far; polynomials of degree l need orders up to l.
   constexpr std::size_t kMaxStack = 32;
   double re_stack[kMaxStack], im_stack[kMaxStack];
-  const auto degree = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(a.size())))) - 1;
+  const auto degree =
+      static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(a.size())))) - 1;
   std::vector<double> heap(degree >= kMaxStack ? 2 * (degree + 1) : 0);
   double* re = heap.empty() ? re_stack : heap.data();
   double* im = heap.empty() ? im_stack : heap.data() + degree + 1;

@@ -40,7 +40,9 @@ inline constexpr std::size_t kMaxPatchFunctions = 256;
 inline constexpr std::size_t kMaxPatchDegree = 24;
 
 /// Number of real spherical harmonics up to a degree.
-constexpr std::size_t harmonics_up_to(std::size_t degree) { return (degree + 1) * (degree + 1); }
+constexpr std::size_t harmonics_up_to(std::size_t degree) {
+  return (degree + 1) * (degree + 1);
+}
 
 /// An orthonormal basis of the span of all spherical harmonics up to a degree, restricted to the
 /// nominal cells of a patch. Spherical harmonics rotate into themselves degree by degree, so that
@@ -71,8 +73,8 @@ class PatchBasis {
   /// Values of function k at all nominal cells.
   const std::vector<double>& values(std::size_t k) const { return columns_[k]; }
 
-  /// Coefficients of the first basis functions (at most functions(degree) of them) as coefficients of the local
-  /// polynomials of degree `degree`, in evaluate_local's order and units.
+  /// Coefficients of the first basis functions (at most functions(degree) of them) as coefficients
+  /// of the local polynomials of degree `degree`, in evaluate_local's order and units.
   std::vector<double> to_local(std::span<const double> coefficients, std::size_t degree) const;
 
  private:

@@ -8,7 +8,9 @@
 namespace curlidar {
 
 /// Index of order m (0 <= m <= l) of degree l in a triangle of Legendre values.
-constexpr std::size_t legendre_index(std::size_t l, std::size_t m) { return l * (l + 1) / 2 + m; }
+constexpr std::size_t legendre_index(std::size_t l, std::size_t m) {
+  return l * (l + 1) / 2 + m;
+}
 
 /// Fully normalised associated Legendre functions without Condon-Shortley phase, for all l up to
 /// `degree`: sqrt((2l+1)/(4 pi) (l-m)!/(l+m)!) P_l^m(cos_theta), times sqrt(2) for m > 0.

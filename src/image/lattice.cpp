@@ -19,7 +19,8 @@ Lattice Lattice::uniform(std::uint32_t rows, std::uint32_t columns, double fov_u
   lattice.uniform_ = true;
   lattice.elevations_.resize(rows);
   const double step = rows > 1 ? (fov_up - fov_down) / (rows - 1) : 0;
-  for (std::uint32_t u = 0; u < rows; ++u) lattice.elevations_[u] = fov_down + (rows - 1 - u) * step;
+  for (std::uint32_t u = 0; u < rows; ++u)
+    lattice.elevations_[u] = fov_down + (rows - 1 - u) * step;
   return lattice;
 }
 
@@ -59,7 +60,8 @@ double Lattice::column_of(double azimuth) const {
 
 DenseGrid::DenseGrid(const Lattice& lattice, double row_factor_, double column_factor)
     : rows(static_cast<std::uint64_t>(std::max(1.0, std::round(lattice.rows() * row_factor_)))),
-      columns(static_cast<std::uint64_t>(std::max(1.0, std::round(lattice.columns() * column_factor)))),
+      columns(
+          static_cast<std::uint64_t>(std::max(1.0, std::round(lattice.columns() * column_factor)))),
       row_factor(row_factor_),
       column_step(static_cast<double>(lattice.columns()) / static_cast<double>(columns)),
       last_row(static_cast<double>(lattice.rows() - 1)) {}

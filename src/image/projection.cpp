@@ -23,7 +23,8 @@ Status check(const ProjectSettings& s) {
   if (!(s.min_range_m >= 0) || !std::isfinite(s.min_range_m)) {
     return invalid("the minimum range must be a finite number of metres, 0 or more");
   }
-  if (!(s.max_range.metres >= 0) || !(s.max_range.percentile >= 0) || s.max_range.percentile > 100) {
+  if (!(s.max_range.metres >= 0) || !(s.max_range.percentile >= 0) ||
+      s.max_range.percentile > 100) {
     return invalid("the maximum range must be metres above 0 or a percentile in (0, 100]");
   }
   return {};
@@ -86,8 +87,8 @@ RangeImage fill_range_image(const Cloud& cloud, const std::vector<std::uint16_t>
     const double across = (fine_column - column) * column_angle * std::cos(elevation);
     const double along = elevation - lattice.elevation(row);
     const double offset2 = across * across + along * along;
-    const std::size_t cell = image.index(
-        static_cast<std::size_t>(row), static_cast<std::size_t>(column) % lattice.columns());
+    const std::size_t cell = image.index(static_cast<std::size_t>(row),
+                                         static_cast<std::size_t>(column) % lattice.columns());
     Claim& best = claims[cell];
     if (image.occupied(cell)) ++counts.collided;
     if (offset2 < best.offset2 || (offset2 == best.offset2 && range < best.range)) {
@@ -96,8 +97,8 @@ RangeImage fill_range_image(const Cloud& cloud, const std::vector<std::uint16_t>
       image.source[cell] = static_cast<std::uint32_t>(i);
     }
   }
-  counts.kept = counts.returns - counts.outliers - counts.out_of_range - counts.out_of_fov -
-                counts.collided;
+  counts.kept =
+      counts.returns - counts.outliers - counts.out_of_range - counts.out_of_fov - counts.collided;
   return image;
 }
 

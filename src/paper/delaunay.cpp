@@ -13,7 +13,9 @@ namespace {
 
 __extension__ typedef __int128 Int128;
 
-int sign_of(std::int64_t v) { return (v > 0) - (v < 0); }
+int sign_of(std::int64_t v) {
+  return (v > 0) - (v < 0);
+}
 
 /// Directed edges in groups of four (an edge, its dual, and their reverses). Only the two primal
 /// ones of each group carry an origin.

@@ -27,8 +27,12 @@ struct Triangulation {
   std::size_t triangles() const { return corner.size() / 3; }
 };
 
-inline std::uint32_t next_half_edge(std::uint32_t h) { return h % 3 == 2 ? h - 2 : h + 1; }
-inline std::uint32_t previous_half_edge(std::uint32_t h) { return h % 3 == 0 ? h + 2 : h - 1; }
+inline std::uint32_t next_half_edge(std::uint32_t h) {
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
+inline std::uint32_t previous_half_edge(std::uint32_t h) {
+  return h % 3 == 0 ? h + 2 : h - 1;
+}
 
 /// Sign of twice the signed area of abc: positive if counter-clockwise. Exact.
 int orientation(const GridPoint& a, const GridPoint& b, const GridPoint& c);

@@ -27,8 +27,7 @@ std::vector<double> solve(const PatchBasis& basis, std::span<const double> range
     for (Eigen::Index i = 0; i < n; ++i) matrix(i, j) = values[cells[static_cast<std::size_t>(i)]];
   }
   for (Eigen::Index i = 0; i < n; ++i) target[i] = ranges[cells[static_cast<std::size_t>(i)]];
-  const Eigen::LLT<Eigen::MatrixXd> normal(
-      Eigen::MatrixXd(matrix.transpose().lazyProduct(matrix)));
+  const Eigen::LLT<Eigen::MatrixXd> normal(Eigen::MatrixXd(matrix.transpose().lazyProduct(matrix)));
   const auto diagonal = normal.matrixLLT().diagonal();
   Eigen::VectorXd solution;
   if (normal.info() == Eigen::Success &&
@@ -63,12 +62,14 @@ double mean_error(const PatchBasis& basis, const std::vector<double>& coefficien
 /// Sample cells by their use.
 struct Samples {
   std::vector<std::uint32_t> training, testing, all;
+  bool any_own = false;  ///< whether one lies in the patch itself
 
-  Samples(std::span<const double> ranges, std::span<const CellRole> roles) {
+  Samples(std::span<const double> ranges, std::span<const CellRole> roles, bool hold_out) {
     for (std::uint32_t cell = 0; cell < ranges.size(); ++cell) {
       if (ranges[cell] <= 0) continue;
+      any_own = any_own || roles[cell] != CellRole::extended;
       all.push_back(cell);
-      (roles[cell] == CellRole::testing ? testing : training).push_back(cell);
+      (hold_out && roles[cell] == CellRole::testing ? testing : training).push_back(cell);
     }
     if (training.empty()) training = all;  // a patch of testing cells only
   }
@@ -80,8 +81,8 @@ std::size_t functions_for(PatchBasis& basis, std::size_t degree, std::size_t sam
   return std::min(basis.functions(std::min(degree, basis.degree())), samples);
 }
 
-std::size_t choose_degree(PatchBasis& basis, std::span<const double> ranges,
-                          const Samples& samples, const FitSettings& settings) {
+std::size_t choose_degree(PatchBasis& basis, std::span<const double> ranges, const Samples& samples,
+                          const FitSettings& settings) {
   double previous_total = 0;
   std::size_t degree = 1;
   for (;; ++degree) {
@@ -94,8 +95,8 @@ std::size_t choose_degree(PatchBasis& basis, std::span<const double> ranges,
     const double total = weight * training + (1 - weight) * testing;
     if (settings.stop_on_total_error && degree > 1 && total > previous_total) return degree - 1;
     previous_total = total;
-    const bool exhausted = count == samples.training.size() ||
-                           (basis.complete() && degree >= basis.degree());
+    const bool exhausted =
+        count == samples.training.size() || (basis.complete() && degree >= basis.degree());
     if (exhausted || degree >= settings.max_degree) break;
   }
   return degree;
@@ -110,8 +111,8 @@ double training_weight(std::size_t degree, double k) {
 
 PatchFit fit_patch(PatchBasis& basis, std::span<const double> ranges,
                    std::span<const CellRole> roles, const FitSettings& settings) {
-  const Samples samples(ranges, roles);
-  if (samples.all.empty()) return {};
+  const Samples samples(ranges, roles, settings.stop_on_total_error);
+  if (!samples.any_own) return {};
   PatchFit fit;
   const std::size_t degree = choose_degree(basis, ranges, samples, settings);
   const std::size_t count = functions_for(basis, degree, samples.all.size());

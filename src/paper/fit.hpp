@@ -14,7 +14,7 @@ namespace curlidar {
 
 /// The field of one patch. Without coefficients nothing is represented.
 struct PatchFit {
-  std::uint32_t degree = 0;  ///< the lowest degree that has this many functions
+  std::uint32_t degree = 0;          ///< the lowest degree that has this many functions
   std::vector<double> coefficients;  ///< of the patch's basis functions, each exact in float32
 };
 
@@ -22,7 +22,7 @@ struct FitSettings {
   std::uint32_t max_degree = 100;
   double accept_m = 0.5;
   double k = 9;
-  bool stop_on_total_error = true;
+  bool stop_on_total_error = true;  ///< without it no cell is held out for testing
 };
 
 /// Weight of the training error against the testing error at a degree (Eq. 5).
@@ -31,7 +31,8 @@ double training_weight(std::size_t degree, double k);
 /// Fits the samples of a patch's window (0 = none), one per nominal cell of `basis`.
 /// The degree rises from 1 until the mean training error is at most accept_m, or the total error
 /// (Eq. 6) rises, which takes one step back; then all samples are fitted. There are never more
-/// coefficients than samples, nor than the cells can tell apart. Extends `basis` as needed.
+/// coefficients than samples, nor than the cells can tell apart. A patch without samples of its own
+/// stays empty. Extends `basis` as needed.
 PatchFit fit_patch(PatchBasis& basis, std::span<const double> ranges,
                    std::span<const CellRole> roles, const FitSettings& settings);
 

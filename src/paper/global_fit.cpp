@@ -82,14 +82,15 @@ struct DenseRows {
 
 DenseRows sum_rows(const SampleImage& samples, const Lattice& lattice, std::size_t degree,
                    std::size_t threads) {
-  DenseRows rows{std::vector<std::vector<double>>(samples.rows), std::vector<RowSums>(samples.rows)};
+  DenseRows rows{std::vector<std::vector<double>>(samples.rows),
+                 std::vector<RowSums>(samples.rows)};
   const DenseGrid grid(lattice, samples.row_factor, samples.column_factor);
   parallel_for(samples.rows, threads, [&](std::size_t i) {
     const double elevation = lattice.elevation(grid.row(i));
     rows.legendre[i] = legendre(degree, std::sin(elevation), std::cos(elevation));
-    rows.sums[i] = sum_row(samples.range.data() + samples.index(i, 0), samples.columns,
-                           lattice.azimuth(0), lattice.azimuth(grid.column(1)) - lattice.azimuth(0),
-                           degree);
+    rows.sums[i] =
+        sum_row(samples.range.data() + samples.index(i, 0), samples.columns, lattice.azimuth(0),
+                lattice.azimuth(grid.column(1)) - lattice.azimuth(0), degree);
   });
   return rows;
 }
@@ -162,7 +163,8 @@ GlobalModel fit_global(const PaperStages& stages, const PaperSettings& settings,
     field.evaluate_row(row, columns, true, fitted);
     for (std::size_t j = 0; j < columns.size(); ++j) {
       const std::size_t cell = stages.image.index(row, j);
-      if (model.masks.point[cell] && !(std::abs(fitted[j] - range[cell]) < settings.global_reject_m)) {
+      if (model.masks.point[cell] &&
+          !(std::abs(fitted[j] - range[cell]) < settings.global_reject_m)) {
         model.masks.point[cell] = 0;
       }
     }

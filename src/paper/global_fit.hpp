@@ -14,7 +14,7 @@ namespace curlidar {
 
 struct GlobalModel {
   Lattice lattice;
-  PaperSettings settings;            ///< max_range is the largest kept range, in metres
+  PaperSettings settings;  ///< max_range is the largest kept range, in metres
   CellMasks masks;
   std::vector<double> coefficients;  ///< (degree + 1)^2, in real_harmonics' order
 };

@@ -17,8 +17,7 @@ void split(double value, std::int64_t& whole, double& fraction) {
 
 }  // namespace
 
-CellMasks::CellMasks(std::uint32_t rows_, std::uint32_t columns_)
-    : rows(rows_), columns(columns_) {
+CellMasks::CellMasks(std::uint32_t rows_, std::uint32_t columns_) : rows(rows_), columns(columns_) {
   const std::size_t cells = static_cast<std::size_t>(rows) * columns;
   for (auto* mask : {&point, &cliff_row, &cliff_column, &cliff_diagonal}) mask->assign(cells, 0);
 }
@@ -47,8 +46,7 @@ CellMasks make_masks(const RangeImage& image, const CliffThresholds& thresholds)
   for (std::int64_t row = 0; row < masks.rows; ++row) {
     for (std::int64_t column = 0; column < masks.columns; ++column) {
       const std::size_t cell = masks.index(row, column);
-      masks.cliff_column[cell] =
-          is_cliff(cell, masks.index(row, column - 1), thresholds.column_m);
+      masks.cliff_column[cell] = is_cliff(cell, masks.index(row, column - 1), thresholds.column_m);
       if (row == 0) continue;
       masks.cliff_row[cell] = is_cliff(cell, masks.index(row - 1, column), thresholds.row_m);
       masks.cliff_diagonal[cell] =

@@ -104,7 +104,8 @@ bool has_neighbours(const CubeGrid& grid, const std::vector<Vec3>& positions, co
   for (int dz = -reach; dz <= reach; ++dz) {
     for (int dy = -reach; dy <= reach; ++dy) {
       for (int dx = -reach; dx <= reach; ++dx) {
-        for (const std::uint32_t j : grid.points_in({centre.x + dx, centre.y + dy, centre.z + dz})) {
+        for (const std::uint32_t j :
+             grid.points_in({centre.x + dx, centre.y + dy, centre.z + dz})) {
           const Vec3 d = positions[j] - p;
           if (dot(d, d) <= radius2 && ++found >= needed) return true;
         }

@@ -33,7 +33,8 @@ CellRect PatchGrid::window(std::size_t patch_row, std::size_t patch_column) cons
   CellRect rect = core(patch_row, patch_column);
   rect.row_begin = std::max<std::int64_t>(rect.row_begin - overlap_, 0);
   rect.row_end = std::min<std::int64_t>(rect.row_end + overlap_, dense_rows_);
-  const auto spare = static_cast<std::int64_t>(dense_columns_) - static_cast<std::int64_t>(rect.width());
+  const auto spare =
+      static_cast<std::int64_t>(dense_columns_) - static_cast<std::int64_t>(rect.width());
   const std::int64_t side = std::min<std::int64_t>(overlap_, spare / 2);
   rect.column_begin -= side;
   rect.column_end += side;
@@ -51,9 +52,9 @@ std::vector<CellRole> PatchGrid::roles(std::size_t patch_row, std::size_t patch_
       const std::int64_t r = row - own.row_begin, c = column - own.column_begin;
       const bool in_core = r >= 0 && row < own.row_end && c >= 0 && column < own.column_end;
       const bool on_diagonal = r % 2 == 0 && (c == r || c == last - r);
-      roles.push_back(!in_core       ? CellRole::extended
-                      : on_diagonal  ? CellRole::testing
-                                     : CellRole::training);
+      roles.push_back(!in_core      ? CellRole::extended
+                      : on_diagonal ? CellRole::testing
+                                    : CellRole::training);
     }
   }
   return roles;
@@ -78,7 +79,8 @@ double PatchGrid::lattice_row(double dense_row) const {
 
 double PatchGrid::centre_elevation(std::size_t patch_row) const {
   const CellRect rect = core(patch_row, 0);
-  return lattice_.elevation(lattice_row(0.5 * static_cast<double>(rect.row_begin + rect.row_end - 1)));
+  return lattice_.elevation(
+      lattice_row(0.5 * static_cast<double>(rect.row_begin + rect.row_end - 1)));
 }
 
 double PatchGrid::centre_azimuth(std::size_t patch_column) const {

@@ -93,8 +93,8 @@ Status validate(const PaperSettings& s) {
   CURLIDAR_TRY(check_number("the overlap", s.overlap, 0, 64));
   const double height = s.patch * s.upsample_rows + 2.0 * s.overlap;
   const double width = s.patch * s.upsample_columns + 2.0 * s.overlap;
-  CURLIDAR_TRY(check_number("the number of cells in a patch with its overlap", height * width, 1,
-                            2048));
+  CURLIDAR_TRY(
+      check_number("the number of cells in a patch with its overlap", height * width, 1, 2048));
   CURLIDAR_TRY(check_number("the maximum degree", s.max_degree, 1, 1000));
   CURLIDAR_TRY(check_number("the accepted error", s.accept_m, 0, 1e6));
   CURLIDAR_TRY(check_number("the rejected error", s.reject_m, 0, 1e6));
@@ -117,20 +117,19 @@ PaperStages run_stages(const Cloud& cloud, const Detection& detection,
   done("outliers", 0.1);
   const ProjectSettings projection{settings.row_rule, settings.rows, settings.columns,
                                    settings.min_range_m, settings.max_range};
-  out.image = fill_range_image(cloud, detection.ring_of_point,
-                               make_lattice(projection, detection.sensor), settings.row_rule,
-                               settings.min_range_m,
-                               resolve_max_range(settings.max_range, cloud, detection.sensor),
-                               inliers, out.counts);
+  out.image = fill_range_image(
+      cloud, detection.ring_of_point, make_lattice(projection, detection.sensor), settings.row_rule,
+      settings.min_range_m, resolve_max_range(settings.max_range, cloud, detection.sensor), inliers,
+      out.counts);
   out.masks = make_masks(out.image, settings.cliffs);
   done("project", 0.2);
   if (options.always_mesh || settings.upsample_rows > 1 || settings.upsample_columns > 1) {
     out.mesh = make_polar_mesh(out.image);
   }
   done("mesh", 0.4);
-  out.samples = upsample(out.image, out.mesh, out.masks, settings.upsample_rows,
-                         settings.upsample_columns, settings.refused_triangle_share,
-                         options.threads);
+  out.samples =
+      upsample(out.image, out.mesh, out.masks, settings.upsample_rows, settings.upsample_columns,
+               settings.refused_triangle_share, options.threads);
   done("upsample", 0.6);
   return out;
 }

@@ -23,7 +23,7 @@ Status validate(const PaperSettings& settings);
 /// Everything before the fit.
 struct PaperStages {
   RangeImage image;
-  PolarMesh mesh;       ///< empty when nothing is upsampled and no mesh was asked for
+  PolarMesh mesh;  ///< empty when nothing is upsampled and no mesh was asked for
   CellMasks masks;
   SampleImage samples;
   ProjectionCounts counts;

@@ -12,10 +12,10 @@
 namespace curlidar {
 
 struct PolarMesh {
-  std::vector<Vec3> vertices;             ///< points at cell centres
-  std::vector<std::uint32_t> cells;       ///< cell of the range image of each vertex
-  Triangulation surface;                  ///< Delaunay in the polar plane, corners into vertices
-  std::vector<std::uint32_t> cap;         ///< three corners a triangle: the convex closure
+  std::vector<Vec3> vertices;        ///< points at cell centres
+  std::vector<std::uint32_t> cells;  ///< cell of the range image of each vertex
+  Triangulation surface;             ///< Delaunay in the polar plane, corners into vertices
+  std::vector<std::uint32_t> cap;    ///< three corners a triangle: the convex closure
 
   std::size_t triangles() const { return surface.triangles() + cap.size() / 3; }
   /// Corner k of triangle t; the triangles of the cap follow those of the surface.

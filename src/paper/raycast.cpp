@@ -15,9 +15,9 @@ constexpr double kTurn = 2 * std::numbers::pi;
 
 /// The cone of directions that meet a triangle, and its plane.
 struct Cone {
-  Vec3 side[3];  ///< normals of the planes through the origin and an edge
-  Vec3 normal;   ///< of the triangle's plane
-  double offset; ///< dot(normal, any corner)
+  Vec3 side[3];   ///< normals of the planes through the origin and an edge
+  Vec3 normal;    ///< of the triangle's plane
+  double offset;  ///< dot(normal, any corner)
 
   Cone(const Vec3& a, const Vec3& b, const Vec3& c)
       : side{cross(a, b), cross(b, c), cross(c, a)},
@@ -59,7 +59,9 @@ double highest_on_arc(const Vec3& a, const Vec3& b, double elevation_a, double e
   return on_arc ? elevation_of(top) : ends;
 }
 
-double wrap(double angle) { return angle - kTurn * std::round(angle / kTurn); }
+double wrap(double angle) {
+  return angle - kTurn * std::round(angle / kTurn);
+}
 
 class Rasteriser {
  public:
@@ -161,7 +163,8 @@ class Rasteriser {
         static_cast<std::int64_t>(std::floor((west + std::numbers::pi) * per_radian)) - 1;
     box.column_end =
         static_cast<std::int64_t>(std::ceil((east + std::numbers::pi) * per_radian)) + 1;
-    if (all_columns || box.column_end - box.column_begin >= static_cast<std::int64_t>(grid_.columns)) {
+    if (all_columns ||
+        box.column_end - box.column_begin >= static_cast<std::int64_t>(grid_.columns)) {
       box.column_begin = 0;
       box.column_end = static_cast<std::int64_t>(grid_.columns) - 1;
     }
@@ -198,10 +201,12 @@ std::vector<std::uint8_t> largest_triangles(const PolarMesh& mesh, double share)
   std::vector<std::uint32_t> order(count);
   for (std::size_t t = 0; t < count; ++t) {
     const Vec3& a = mesh.vertices[mesh.corner(t, 0)];
-    area[t] = norm(cross(mesh.vertices[mesh.corner(t, 1)] - a, mesh.vertices[mesh.corner(t, 2)] - a));
+    area[t] =
+        norm(cross(mesh.vertices[mesh.corner(t, 1)] - a, mesh.vertices[mesh.corner(t, 2)] - a));
     order[t] = static_cast<std::uint32_t>(t);
   }
-  const auto refused = static_cast<std::ptrdiff_t>(static_cast<double>(count) * std::clamp(share, 0.0, 1.0));
+  const auto refused =
+      static_cast<std::ptrdiff_t>(static_cast<double>(count) * std::clamp(share, 0.0, 1.0));
   const auto larger = [&](std::uint32_t a, std::uint32_t b) {
     return area[a] != area[b] ? area[a] > area[b] : a < b;
   };

@@ -31,8 +31,11 @@ SampleImage upsample(const RangeImage& image, const PolarMesh& mesh, const CellM
                      std::uint32_t row_factor, std::uint32_t column_factor, double refused_share,
                      std::size_t threads) {
   if (row_factor == 1 && column_factor == 1) return original_samples(image);
-  SampleImage out{row_factor, column_factor, image.lattice.rows() * row_factor,
-                  image.lattice.columns() * column_factor, {}};
+  SampleImage out{row_factor,
+                  column_factor,
+                  image.lattice.rows() * row_factor,
+                  image.lattice.columns() * column_factor,
+                  {}};
   const std::size_t cells = static_cast<std::size_t>(out.rows) * out.columns;
   out.range.assign(cells, 0);
   std::vector<std::uint8_t> wanted(cells, 0);
