@@ -137,6 +137,7 @@ int main(int argc, char** argv) {
   for (const Reference& reference : kReferences) {
     if (quick && reference.profile == Profile::paper_global) continue;
     settings.profile = reference.profile;
+    settings.paper = for_profile({}, reference.profile);
     settings.paper.patch = reference.patch;
     const std::clock_t begin = std::clock();
     const Result<Encoded> encoded = encode(*scan, settings);

@@ -59,8 +59,9 @@ struct PaperSettings {
 Result<PaperSettings> paper_preset(std::string_view name);
 std::vector<std::string> paper_preset_names();
 
-/// The preset's settings as the given profile changes them (paper-1to1: S 1x1, accept 0.01 m,
-/// no overlap, no E_t stop).
+/// A preset's settings as the given profile starts from them (paper-1to1: S 1x1, accept 0.01 m,
+/// reject 0.05 m, no overlap, no E_t stop). Apply it before changes of your own: `encode` takes
+/// EncodeSettings::paper as it is.
 PaperSettings for_profile(PaperSettings settings, Profile profile);
 
 }  // namespace curlidar

@@ -26,7 +26,7 @@ struct Prepared {
 };
 
 Result<Prepared> prepare(const Cloud& cloud, const EncodeSettings& settings) {
-  Prepared out{for_profile(settings.paper, settings.profile), {}};
+  Prepared out{settings.paper, {}};
   CURLIDAR_TRY(validate(out.settings));
   if (count_returns(cloud) == 0) {
     return Error{ErrorCode::invalid_argument,

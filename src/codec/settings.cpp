@@ -81,6 +81,7 @@ PaperSettings for_profile(PaperSettings settings, Profile profile) {
     settings.upsample_rows = settings.upsample_columns = 1;
     settings.overlap = 0;
     settings.accept_m = 0.01;
+    settings.reject_m = 0.05;
     settings.stop_on_total_error = false;
   }
   return settings;

@@ -75,10 +75,13 @@ struct Samples {
   }
 };
 
-/// Number of functions used at a degree for a number of samples.
-std::size_t functions_for(PatchBasis& basis, std::size_t degree, std::size_t samples) {
+/// Number of functions used at a degree for a number of samples: never more than there are samples.
+/// A fit that is to be tested on held-out cells needs as many spare samples as it has freedoms.
+std::size_t functions_for(PatchBasis& basis, std::size_t degree, std::size_t samples,
+                          const FitSettings& settings) {
   basis.extend(degree);
-  return std::min(basis.functions(std::min(degree, basis.degree())), samples);
+  const std::size_t allowed = settings.stop_on_total_error ? (samples + 1) / 2 : samples;
+  return std::min(basis.functions(std::min(degree, basis.degree())), allowed);
 }
 
 std::size_t choose_degree(PatchBasis& basis, std::span<const double> ranges, const Samples& samples,
@@ -86,7 +89,7 @@ std::size_t choose_degree(PatchBasis& basis, std::span<const double> ranges, con
   double previous_total = 0;
   std::size_t degree = 1;
   for (;; ++degree) {
-    const std::size_t count = functions_for(basis, degree, samples.training.size());
+    const std::size_t count = functions_for(basis, degree, samples.training.size(), settings);
     const std::vector<double> c = solve(basis, ranges, samples.training, count);
     const double training = mean_error(basis, c, ranges, samples.training);
     if (training <= settings.accept_m) break;
@@ -95,8 +98,8 @@ std::size_t choose_degree(PatchBasis& basis, std::span<const double> ranges, con
     const double total = weight * training + (1 - weight) * testing;
     if (settings.stop_on_total_error && degree > 1 && total > previous_total) return degree - 1;
     previous_total = total;
-    const bool exhausted =
-        count == samples.training.size() || (basis.complete() && degree >= basis.degree());
+    const std::size_t available = basis.functions(std::min(degree, basis.degree()));
+    const bool exhausted = count < available || (basis.complete() && degree >= basis.degree());
     if (exhausted || degree >= settings.max_degree) break;
   }
   return degree;
@@ -115,7 +118,7 @@ PatchFit fit_patch(PatchBasis& basis, std::span<const double> ranges,
   if (!samples.any_own) return {};
   PatchFit fit;
   const std::size_t degree = choose_degree(basis, ranges, samples, settings);
-  const std::size_t count = functions_for(basis, degree, samples.all.size());
+  const std::size_t count = functions_for(basis, degree, samples.all.size(), settings);
   fit.degree = static_cast<std::uint32_t>(basis.degree_with(count));
   fit.coefficients = solve(basis, ranges, samples.all, count);
   for (double& c : fit.coefficients) c = static_cast<double>(static_cast<float>(c));
