@@ -41,8 +41,8 @@ struct RenderSettings {
 };
 
 /// Draws the returns of a cloud. For ColourBy::error `values` holds one value per slot (metres);
-/// otherwise it may be empty. Range images show organised clouds row by row and others by their
-/// ring attribute or else by elevation, as seen from the sensor; bird's-eye views have forward up
+/// otherwise it may be empty. Range images show organised clouds row by row and others by the
+/// rings that detect_sensor finds, as seen from the sensor; bird's-eye views have forward up
 /// and circles every 10 m. Errors: no return, sides outside 16 .. 8192 pixels, missing values.
 /// Deterministic. About 0.2 s for 120 k points and a million pixels.
 Result<Image> render(const Cloud& cloud, const RenderSettings& settings,

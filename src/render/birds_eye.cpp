@@ -50,7 +50,7 @@ void draw_labels(Canvas& canvas, double pixels_per_metre, double extent) {
     const int x = static_cast<int>(std::min(0.5 * canvas.width() + offset, 1e6));
     const int y = static_cast<int>(std::min(0.5 * canvas.height() + offset, 1e6));
     if (x > canvas.width() || y > canvas.height()) return;
-    canvas.text(x + 2 * size, y, fmt::format("{:g}", k * step), size, mix(kFaint, kInk, 0.45f));
+    canvas.text(x + 2 * size, y, fmt::format("{:g} m", k * step), size, mix(kFaint, kInk, 0.45f));
   }
 }
 

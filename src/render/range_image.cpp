@@ -4,10 +4,11 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <vector>
 
+#include "base/try.hpp"
+#include "curlidar/sensor.hpp"
 #include "render/views.hpp"
 
 namespace curlidar::drawing {
@@ -78,76 +79,21 @@ Grid grid_of_organised(const Cloud& cloud) {
   return grid;
 }
 
-/// Row of every slot from a ring attribute, top ring first; empty if there is none to trust.
-std::vector<std::uint32_t> rows_by_ring(const Cloud& cloud, std::size_t& rows) {
-  const Attribute* ring = nullptr;
-  for (const char* name : {"ring", "channel", "laser_id"}) {
-    if (ring == nullptr) ring = cloud.find(name);
-  }
-  if (ring == nullptr) return {};
-  constexpr double kMaxRings = 1024;
-  std::vector<double> sum(static_cast<std::size_t>(kMaxRings));
-  std::vector<double> count(sum.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!is_return(cloud.positions[i])) continue;
-    const double value = ring->as_double(i);
-    if (!(value >= 0 && value < kMaxRings)) return {};
-    sum[static_cast<std::size_t>(value)] += elevation_of(cloud.positions[i]);
-    count[static_cast<std::size_t>(value)] += 1;
-  }
-  std::vector<std::size_t> order;
-  for (std::size_t r = 0; r < sum.size(); ++r) {
-    if (count[r] > 0) order.push_back(r);
-  }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return sum[a] / count[a] > sum[b] / count[b];
-  });
-  std::vector<std::uint32_t> rank(sum.size(), kNone);
-  for (std::size_t k = 0; k < order.size(); ++k) rank[order[k]] = static_cast<std::uint32_t>(k);
-  rows = order.size();
-  std::vector<std::uint32_t> row_of(cloud.size(), kNone);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (is_return(cloud.positions[i]))
-      row_of[i] = rank[static_cast<std::size_t>(ring->as_double(i))];
-  }
-  return row_of;
-}
-
-/// Row of every slot by its elevation, in 64 equal bins.
-std::vector<std::uint32_t> rows_by_elevation(const Cloud& cloud, std::size_t& rows) {
-  rows = 64;
-  double low = 2, high = -2;
-  for (const Vec3& p : cloud.positions) {
-    if (!is_return(p)) continue;
-    low = std::min(low, elevation_of(p));
-    high = std::max(high, elevation_of(p));
-  }
-  const double step = std::max((high - low) / static_cast<double>(rows), 1e-9);
-  std::vector<std::uint32_t> row_of(cloud.size(), kNone);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!is_return(cloud.positions[i])) continue;
-    const double below_top = (high - elevation_of(cloud.positions[i])) / step;
-    row_of[i] =
-        static_cast<std::uint32_t>(std::clamp(below_top, 0.0, static_cast<double>(rows - 1)));
-  }
-  return row_of;
-}
-
-/// Rows by ring or elevation, columns by azimuth: the view to the back, left, front, right, back.
-Grid grid_of_unorganised(const Cloud& cloud, std::size_t max_columns) {
-  std::size_t rows = 0;
-  std::vector<std::uint32_t> row_of = rows_by_ring(cloud, rows);
-  if (row_of.empty()) row_of = rows_by_elevation(cloud, rows);
+/// Rows by detected ring, columns by azimuth: the view to the back, left, front, right, back.
+Result<Grid> grid_of_unorganised(const Cloud& cloud, std::size_t max_columns) {
+  CURLIDAR_TRY_ASSIGN(detection, detect_sensor(cloud));
+  const std::vector<std::uint16_t>& row_of = detection.ring_of_point;
+  const std::size_t rows = detection.sensor.rings.size();
   std::vector<std::size_t> filled(rows);
-  for (const std::uint32_t row : row_of) {
-    if (row != kNone) ++filled[row];
+  for (const std::uint16_t row : row_of) {
+    if (row != kNoRing) ++filled[row];
   }
   const std::size_t columns =
       std::clamp<std::size_t>(*std::max_element(filled.begin(), filled.end()),
                               std::min<std::size_t>(64, max_columns), max_columns);
   Grid grid(rows, columns);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (row_of[i] == kNone) continue;
+    if (row_of[i] == kNoRing) continue;
     const double turn =
         (std::numbers::pi - azimuth_of(cloud.positions[i])) / (2 * std::numbers::pi);
     const auto column = std::min(
@@ -158,6 +104,11 @@ Grid grid_of_unorganised(const Cloud& cloud, std::size_t max_columns) {
     }
   }
   return grid;
+}
+
+Result<Grid> make_grid(const Cloud& cloud, std::size_t max_columns) {
+  if (cloud.organised()) return grid_of_organised(cloud);
+  return grid_of_unorganised(cloud, max_columns);
 }
 
 /// The nearest return of the cells that fall on pixel (x, y) of a width x height picture.
@@ -184,10 +135,10 @@ std::uint32_t nearest_on_pixel(const Grid& grid, const Cloud& cloud, int x, int 
 
 }  // namespace
 
-Canvas draw_range_image(const Cloud& cloud, const RenderSettings& settings, const Scale& scale) {
+Result<Canvas> draw_range_image(const Cloud& cloud, const RenderSettings& settings,
+                                const Scale& scale) {
   const int width = static_cast<int>(settings.width);
-  const Grid grid =
-      cloud.organised() ? grid_of_organised(cloud) : grid_of_unorganised(cloud, settings.width);
+  CURLIDAR_TRY_ASSIGN(grid, make_grid(cloud, settings.width));
   const int strip = strip_height(width);
   const int head = settings.title.empty() ? 0 : strip;
   int height = 0;

@@ -82,8 +82,10 @@ Result<Image> render(const Cloud& cloud, const RenderSettings& settings,
   if (settings.clip_above_m) return render_below(cloud, settings, values);
   CURLIDAR_TRY_ASSIGN(scale, drawing::make_scale(cloud, settings, values));
   switch (settings.view) {
-    case View::range_image:
-      return drawing::draw_range_image(cloud, settings, scale).image();
+    case View::range_image: {
+      CURLIDAR_TRY_ASSIGN(canvas, drawing::draw_range_image(cloud, settings, scale));
+      return canvas.image();
+    }
     case View::birds_eye:
       return drawing::draw_birds_eye(cloud, settings, scale).image();
     case View::perspective:

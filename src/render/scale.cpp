@@ -57,11 +57,11 @@ const char* label_of(ColourBy colour) {
   return "error [m]";
 }
 
-std::string number(double value) {
-  const double magnitude = std::abs(value);
-  if (magnitude < 1e-9) return "0";
-  if (magnitude >= 1e5 || magnitude < 1e-3) return fmt::format("{:.1e}", value);
-  return fmt::format("{:.{}f}", value, magnitude >= 100 ? 0 : magnitude >= 1 ? 1 : 3);
+/// An end of the bar, as precisely as the bar's span asks for.
+std::string number(double value, double span) {
+  if (std::abs(value) >= 1e5 || span < 1e-3) return fmt::format("{:.2e}", value);
+  const int decimals = span >= 100 ? 0 : span >= 1 ? 1 : span >= 0.1 ? 2 : 4;
+  return fmt::format("{:.{}f}", value, decimals);
 }
 
 }  // namespace
@@ -109,7 +109,7 @@ Result<Scale> make_scale(const Cloud& cloud, const RenderSettings& settings,
 }
 
 int font_scale(int picture_width) {
-  return std::clamp((picture_width + 160) / 400, 1, 6);
+  return std::clamp((picture_width + 1000) / 800, 1, 6);
 }
 
 int strip_height(int picture_width) {
@@ -130,14 +130,15 @@ void draw_scale(Canvas& canvas, const Scale& scale) {
     canvas.text(x, y, text, size);
     x += text_width(text, size) + 4 * size;
   };
+  const double span = scale.high - scale.low;
   write(scale.label);
-  write(number(scale.low));
+  write(number(scale.low, span));
   const int width = std::min(80 * size, canvas.width() / 4);
   for (int i = 0; i < width; ++i) {
     canvas.fill(x + i, y, 1, kGlyphHeight * size, scale.colour(i / std::max(1.0, width - 1.0)));
   }
   x += width + 4 * size;
-  write(number(scale.high));
+  write(number(scale.high, span));
 }
 
 }  // namespace curlidar::drawing

@@ -8,7 +8,9 @@
 namespace curlidar::drawing {
 
 /// Rows over columns as a person at the sensor sees them: left is left, up is up.
-Canvas draw_range_image(const Cloud& cloud, const RenderSettings& settings, const Scale& scale);
+/// Organised clouds keep their rows; the rings of others are detected.
+Result<Canvas> draw_range_image(const Cloud& cloud, const RenderSettings& settings,
+                                const Scale& scale);
 /// From above: forward (x) is up, left (y) is left, with range circles.
 Canvas draw_birds_eye(const Cloud& cloud, const RenderSettings& settings, const Scale& scale);
 /// From a camera that orbits the sensor.
