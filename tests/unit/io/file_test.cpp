@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -129,6 +130,58 @@ TEST_F(FileTest, NamesMissingFilesAndDirectories) {
 
 TEST_F(FileTest, LongNamesNeedNoLongerTemporaryName) {
   EXPECT_TRUE(write_file(path(std::string(255, 'n')), test::to_bytes("x")));
+}
+
+/// Lets a pipe stand in for a standard stream while it lives.
+class PipeAs {
+ public:
+  PipeAs(int stream, int end) : stream_(stream), saved_(::dup(stream)) {
+    EXPECT_EQ(::pipe(ends_), 0);
+    ::dup2(ends_[end], stream);
+    ::close(ends_[end]);
+    other_ = ends_[1 - end];
+  }
+  ~PipeAs() {
+    ::dup2(saved_, stream_);
+    ::close(saved_);
+  }
+  int other() const { return other_; }
+
+ private:
+  int stream_, saved_, other_ = -1;
+  int ends_[2] = {-1, -1};
+};
+
+TEST(Streams, DashIsStandardInput) {
+  const std::string text = "1 2 3\n4 5 6\n";
+  const PipeAs input(STDIN_FILENO, 0);
+  ASSERT_EQ(::write(input.other(), text.data(), text.size()), ssize_t(text.size()));
+  ::close(input.other());
+  const auto cloud = read_cloud("-");
+  ASSERT_TRUE(cloud) << cloud.error().message;
+  EXPECT_EQ(cloud->positions, (std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}));
+}
+
+TEST(Streams, ErrorsNameStandardInput) {
+  const PipeAs input(STDIN_FILENO, 0);
+  ::close(input.other());
+  EXPECT_THAT(read_cloud("-").error().message, HasSubstr("standard input"));
+}
+
+TEST(Streams, DashIsStandardOutput) {
+  Cloud cloud;
+  cloud.positions = {{1, 2, 3}};
+  cloud.width = 1;
+  std::string got(100, '\0');
+  {
+    std::fflush(stdout);
+    const PipeAs output(STDOUT_FILENO, 1);
+    EXPECT_TRUE(write_cloud("-", cloud, {CloudFormat::csv, Encoding::ascii}));
+    const ssize_t size = ::read(output.other(), got.data(), got.size());
+    ::close(output.other());
+    got.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
+  }
+  EXPECT_EQ(got, "x,y,z\n1,2,3\n");
 }
 
 TEST(Format, ByNameAndExtension) {
