@@ -22,11 +22,11 @@ namespace curlidar {
 
 struct EncodeSettings {
   Profile profile = Profile::paper;
-  PaperSettings paper;
+  PaperSettings paper{};
   /// The sensor; detected from the cloud when absent.
-  std::optional<SensorProfile> sensor;
+  std::optional<SensorProfile> sensor{};
   /// Attributes to keep: nullopt = all, empty = none. Unknown names are an error.
-  std::optional<std::vector<std::string>> attributes;
+  std::optional<std::vector<std::string>> attributes{};
   std::size_t threads = 1;  ///< never changes the bytes; 0 = all cores
 };
 

@@ -28,7 +28,7 @@ struct ProjectSettings {
   std::uint32_t rows = 0;  ///< number of uniform rows; 0 = the sensor's ring count
   std::uint32_t columns = 1024;
   double min_range_m = 0;
-  RangeLimit max_range;
+  RangeLimit max_range{};
 };
 
 /// Where every return went. The fields add up to `returns`.
