@@ -11,8 +11,8 @@ struct Colour {
   float r = 0, g = 0, b = 0;
 
   friend Colour operator*(const Colour& c, float s) { return {c.r * s, c.g * s, c.b * s}; }
-  friend Colour operator+(const Colour& a, const Colour& b) {
-    return {a.r + b.r, a.g + b.g, a.b + b.b};
+  friend Colour operator+(const Colour& c, const Colour& d) {
+    return {c.r + d.r, c.g + d.g, c.b + d.b};
   }
   friend bool operator==(const Colour&, const Colour&) = default;
 };

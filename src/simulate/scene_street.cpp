@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "simulate/buildings.hpp"
 #include "simulate/plants.hpp"
@@ -82,16 +80,8 @@ class Street {
   void surfaces() const {
     strip(kStart, kEnd, -kKerb, kKerb, 12, 0.18, road);
     for (const double side : {1.0, -1.0}) {
-      for (const auto& [x0, x1] : {std::array{kStart, kSideStart}, std::array{kSideEnd, kEnd}}) {
-        const auto kerb = [&](double x, double) { return pavement(x, kKerb); };
-        strip(x0, x1, side * kKerb, side * kFront, 2, 0.38, pavement);
-        strip(x0, x1, side * kFront, side * kReach, 6, 0.45, pavement);
-        const int rows = static_cast<int>((x1 - x0) / 2) + 1;
-        root_.of(0.5).sheet(rows + 1, 2, [&](int i, int j) {
-          const double x = x0 + (x1 - x0) * i / rows;
-          return Vec3{x, side * kKerb, j == 0 ? road(x, kKerb) : kerb(x, 0)};
-        });
-      }
+      footway(side, kStart, kSideStart);
+      footway(side, kSideEnd, kEnd);
       strip(kSideStart, kSideEnd, side * kKerb, side * kReach, 8, 0.18, road);
       for (const double x : {kSideStart, kSideEnd}) {  // kerbs of the side street
         root_.of(0.5).quad({x, side * kKerb, road(x, kKerb)}, {x, side * kReach, road(x, kReach)},
@@ -99,6 +89,17 @@ class Street {
                            {x, side * kKerb, pavement(x, kKerb)});
       }
     }
+  }
+
+  /// Pavement, plots behind it and the kerb before it.
+  void footway(double side, double x0, double x1) const {
+    strip(x0, x1, side * kKerb, side * kFront, 2, 0.38, pavement);
+    strip(x0, x1, side * kFront, side * kReach, 6, 0.45, pavement);
+    const int rows = static_cast<int>((x1 - x0) / 2) + 1;
+    root_.of(0.5).sheet(rows + 1, 2, [&](int i, int j) {
+      const double x = x0 + (x1 - x0) * i / rows;
+      return Vec3{x, side * kKerb, j == 0 ? road(x, kKerb) : pavement(x, kKerb)};
+    });
   }
 
   /// Thermoplastic paint, 4 mm thick.
