@@ -30,12 +30,6 @@ struct EncodeSettings {
   std::size_t threads = 1;  ///< never changes the bytes; 0 = all cores
 };
 
-/// Wall time of one stage, milliseconds.
-struct StageTime {
-  std::string stage;
-  double ms = 0;
-};
-
 struct EncodeReport {
   std::string sensor;            ///< name of the profile used
   std::size_t points_in = 0;     ///< returns of the input

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "curlidar/cloud.hpp"
-#include "curlidar/codec.hpp"
+#include "curlidar/progress.hpp"
 #include "curlidar/sensor.hpp"
 #include "curlidar/settings.hpp"
 #include "image/range_image.hpp"

@@ -13,7 +13,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-CMAKE, BUILD_DIR, CXX, VERSION = sys.argv[1:5]
+CMAKE, BUILD_DIR, CXX, VERSION = sys.argv[1], Path(sys.argv[2]).resolve(), *sys.argv[3:5]
 CONSUMER = Path(__file__).resolve().parent / "consumer"
 
 
