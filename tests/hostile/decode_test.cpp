@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whatever the bytes, decoding ends in a scan that can be reconstructed or in an error.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "curlidar/codec.hpp"
+#include "support/chunks.hpp"
+#include "support/clouds.hpp"
+#include "support/scans.hpp"
+
+namespace curlidar {
+namespace {
+
+constexpr DecodeLimits kLimits{.max_cells = 1u << 16, .max_bytes = 1u << 22};
+
+std::vector<std::byte> file_of(Profile profile) {
+  const SensorProfile sensor = test::small_sensor(12, 64);
+  EncodeSettings settings = test::small_settings(sensor);
+  settings.profile = profile;
+  settings.paper = for_profile(settings.paper, profile);
+  settings.paper.global_degree = 6;
+  Cloud scan = test::small_scan("room", sensor);
+  scan.metadata["frame_id"] = "lidar";
+  return encode(scan, settings)->bytes;
+}
+
+/// Decodes and, if that works, reconstructs; both must stay within bounds and return.
+bool survives(ByteSpan bytes) {
+  const Result<DecodedScan> scan = decode(bytes, kLimits);
+  if (!scan) return !scan.error().message.empty();
+  for (const bool masks : {true, false}) {
+    const Result<Cloud> cloud =
+        reconstruct(*scan, {.rows = 1.5, .columns = 0.75, .masks = masks, .max_points = 1u << 18});
+    if (!cloud && cloud.error().message.empty()) return false;
+  }
+  return true;
+}
+
+class HostileDecode : public testing::TestWithParam<Profile> {};
+
+TEST_P(HostileDecode, CutAtEveryLength) {
+  const auto file = file_of(GetParam());
+  for (std::size_t size = 0; size < file.size(); ++size) {
+    const Result<DecodedScan> scan = decode(ByteSpan(file).first(size), kLimits);
+    ASSERT_FALSE(scan) << "cut at " << size;
+  }
+}
+
+TEST_P(HostileDecode, DamageBehindRightChecksums) {
+  const auto file = file_of(GetParam());
+  ASSERT_TRUE(decode(file, kLimits));
+  test::Random random(7);
+  std::size_t decoded = 0;
+  for (int i = 0; i < 1500; ++i) {
+    auto damaged = file;
+    for (std::uint64_t n = 1 + random.below(3); n > 0; --n) {
+      damaged[8 + random.below(file.size() - 8)] = static_cast<std::byte>(random.next());
+    }
+    damaged = test::with_right_checksums(damaged);
+    ASSERT_TRUE(survives(damaged)) << "case " << i;
+    decoded += decode(damaged, kLimits) ? 1 : 0;
+  }
+  EXPECT_GT(decoded, 50u) << "the damage never reached a readable file";
+}
+
+INSTANTIATE_TEST_SUITE_P(All, HostileDecode,
+                         testing::Values(Profile::paper, Profile::paper_1to1,
+                                         Profile::paper_global),
+                         [](const auto& param_info) {
+                           std::string name = to_string(param_info.param);
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST(HostileDecode, ErrorsNameTheChunkAndTheByte) {
+  auto file = file_of(Profile::paper);
+  file[file.size() / 2] ^= std::byte{1};
+  const Result<DecodedScan> scan = decode(file, kLimits);
+  ASSERT_FALSE(scan);
+  EXPECT_EQ(scan.error().code, ErrorCode::corrupt);
+  EXPECT_NE(scan.error().message.find("byte"), std::string::npos) << scan.error().message;
+}
+
+}  // namespace
+}  // namespace curlidar
