@@ -5,15 +5,21 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <initializer_list>
 #include <optional>
 
 #include "base/try.hpp"
 #include "curlidar/sensor.hpp"
 #include "sensor/angles.hpp"
+#include "sensor/utf8.hpp"
 
+// toml++ 3.3 asserts some things that files may break ("[=]"), and in release builds tells the
+// compiler to rely on them; each has an ordinary error behind it, which this leaves in force.
+#pragma push_macro("NDEBUG")
+#undef NDEBUG
+#define TOML_ASSERT(condition) static_cast<void>(0)
 #define TOML_EXCEPTIONS 0
 #include <toml++/toml.h>
+#pragma pop_macro("NDEBUG")
 
 namespace curlidar {
 namespace {
@@ -295,7 +301,11 @@ std::string sensor_to_toml(const SensorProfile& profile) {
 }
 
 Result<SensorProfile> parse_sensor_toml(std::string_view text, const std::string& where) {
-  const toml::parse_result parsed = toml::parse(text, where);
+  // toml++ 3.3 runs into undefined behaviour on some characters beyond ASCII outside strings.
+  // Escaped they mean the same inside double quotes, and are mistakes it can tell elsewhere.
+  const std::optional<std::string> ascii = escape_non_ascii(text);
+  if (!ascii) return Error{ErrorCode::corrupt, where + ": not UTF-8 text"};
+  const toml::parse_result parsed = toml::parse(*ascii, where);
   if (!parsed) {
     return error_at(where, parsed.error().source(),
                     fmt::format("not TOML: {}", parsed.error().description()), ErrorCode::corrupt);

@@ -130,6 +130,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Mistake{"NotToml", "name = \"a\"\n= 3\n", ErrorCode::corrupt, "2", "not TOML"},
         Mistake{"Open", "[rings]\nelevation_deg = [1, ", ErrorCode::corrupt, "2", "not TOML"},
+        Mistake{"NoKeyInHeader", "[=]\n", ErrorCode::corrupt, "1", "not TOML"},
         Mistake{"Empty", "", kBad, "", "[rings]"},
         Mistake{"RingsNoTable", "rings = 3\n", kBad, "1", "[rings]"},
         Mistake{"NoRings", "\n[rings]\n", kBad, "2", "elevation_deg"},
@@ -158,6 +159,34 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"Inf", "max_range_m = inf\n[rings]\nelevation_deg=[1]", kBad, "2", "ranges"},
         Mistake{"Steep", "[rings]\nelevation_deg=[91]", kBad, "1", "90 degrees"}),
     [](const auto& param) { return std::string(param.param.name); });
+
+TEST(SensorToml, TakesCharactersOfAllLanguages) {
+  const auto sensor = parse_sensor_toml(
+      "# Gr\xc3\xbc\xc3\x9f"
+      "e \xe6\xbf\x80\xe5\x85\x89 \xf0\x9f\x9a\x97\nname = \"\xc3\xa9\xe5\x85\x89"
+      "\xf0\x9f\x9a\x97\"\n[rings]\nelevation_deg = [1]\n",
+      "utf8.toml");
+  ASSERT_TRUE(sensor) << sensor.error().message;
+  EXPECT_EQ(sensor->name, "\xc3\xa9\xe5\x85\x89\xf0\x9f\x9a\x97");
+}
+
+TEST(SensorToml, RefusesStrayAndMalformedCharacters) {
+  // Outside strings: é, a Cyrillic letter, an Ethiopic one, U+2010, an emoji.
+  for (const char* stray :
+       {"\xc3\xa9", "\xd0\xb6", "\xe1\x8d\xa0", "\xe2\x80\x90", "\xf0\x9f\x9a\x97"}) {
+    const auto sensor = parse_sensor_toml("[rings]\n" + std::string(stray) + " = 1", "stray");
+    ASSERT_FALSE(sensor);
+    EXPECT_THAT(sensor.error().message, HasSubstr("line 2"));
+    EXPECT_FALSE(parse_sensor_toml("a = [1, " + std::string(stray) + "2]", "stray"));
+  }
+  // Truncated, overlong, surrogate, beyond the last, a lone continuation.
+  for (const char* malformed : {"\xc3", "\xc0\xaf", "\xe0\x80\x80", "\xed\xa0\x80",
+                                "\xf4\x90\x80\x80", "\x80", "\xff", "\xe2\x80"}) {
+    const auto sensor = parse_sensor_toml("name = \"" + std::string(malformed), "bytes");
+    ASSERT_FALSE(sensor);
+    EXPECT_THAT(sensor.error().message, HasSubstr("not UTF-8"));
+  }
+}
 
 TEST(SensorToml, SurvivesAnyDamage) {
   const std::string good = sensor_to_toml(*builtin_sensor("pandar40p"));
