@@ -123,8 +123,9 @@ std::vector<std::uint32_t> triangulate_cap(const std::vector<GridPoint>& points,
 }  // namespace
 
 GridPoint polar_grid_point(const Lattice& lattice, std::size_t row, std::size_t column) {
-  // The outermost ring reaches half of the allowed coordinates, whatever the number of rings.
-  const double unit = static_cast<double>(kMaxCoordinate / 2) / lattice.rows();
+  // The outermost ring takes all of the allowed coordinates: 65536 columns on the first of 4096
+  // rings, the finest lattice there is, still lie on points of their own.
+  const double unit = static_cast<double>(kMaxCoordinate) / lattice.rows();
   const double radius = static_cast<double>(row + 1) * unit;
   const double azimuth = lattice.azimuth(static_cast<double>(column));
   return {static_cast<std::int32_t>(std::lround(radius * std::cos(azimuth))),
