@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "base/parallel.hpp"
@@ -13,22 +14,38 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
+/// Bound on the rounding error of dot(cross(a, b), d) / (|a| |b|) for a unit direction d.
+constexpr double kRounding = 16 * std::numeric_limits<double>::epsilon();
+/// Triangles whose corners' directions span less volume are seen edge-on. The smallest cells of
+/// the finest lattice over a usual field of view span a hundred times more.
+constexpr double kEdgeOn = 1e-10;
+
 /// The cone of directions that meet a triangle, and its plane.
 struct Cone {
-  Vec3 side[3];   ///< normals of the planes through the origin and an edge
-  Vec3 normal;    ///< of the triangle's plane
-  double offset;  ///< dot(normal, any corner)
+  Vec3 side[3];     ///< normals of the planes through the origin and an edge
+  double slack[3];  ///< a direction this little outside of a side is on the edge
+  Vec3 normal;      ///< of the triangle's plane
+  double offset;    ///< dot(normal, any corner)
+  bool edge_on;     ///< the origin lies in the triangle's plane
 
   Cone(const Vec3& a, const Vec3& b, const Vec3& c)
       : side{cross(a, b), cross(b, c), cross(c, a)},
         normal(cross(b - a, c - a)),
-        offset(dot(normal, a)) {}
+        offset(dot(normal, a)) {
+    const double na = norm(a), nb = norm(b), nc = norm(c);
+    slack[0] = kRounding * na * nb;
+    slack[1] = kRounding * nb * nc;
+    slack[2] = kRounding * nc * na;
+    edge_on = std::abs(offset) <= kEdgeOn * na * nb * nc;
+  }
 
-  /// Distance along the unit direction, 0 if it does not meet the triangle.
+  /// Distance along the unit direction, 0 if it does not meet the triangle. A triangle seen edge-on
+  /// is left to its neighbours: its own distances would be rounding errors.
   double meet(const Vec3& d) const {
+    if (edge_on) return 0;
     const double s0 = dot(side[0], d), s1 = dot(side[1], d), s2 = dot(side[2], d);
-    const bool all_left = s0 >= 0 && s1 >= 0 && s2 >= 0;
-    const bool all_right = s0 <= 0 && s1 <= 0 && s2 <= 0;
+    const bool all_left = s0 >= -slack[0] && s1 >= -slack[1] && s2 >= -slack[2];
+    const bool all_right = s0 <= slack[0] && s1 <= slack[1] && s2 <= slack[2];
     if (!all_left && !all_right) return 0;
     const double along = dot(normal, d);
     if (along == 0) return 0;

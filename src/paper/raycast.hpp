@@ -19,9 +19,9 @@ struct RayHits {
   std::vector<std::uint32_t> triangle;  ///< its number, kNoTwin where none is met
 };
 
-/// Casts the rays for which wanted[i * columns + j] is not 0. A ray on an edge meets both of its
-/// triangles: none is lost to rounding, because the two sides of an edge see exactly opposite
-/// signs. Of equally near triangles the lowest number wins.
+/// Casts the rays for which wanted[i * columns + j] is not 0. A ray on an edge, as far
+/// as doubles can tell, meets both of its triangles, so that none is lost to rounding; triangles
+/// seen edge-on are left to their neighbours. Of equally near triangles the lowest number wins.
 /// Cost: the sum of the triangles' bounding boxes on the grid. Same result for any thread count.
 RayHits cast_rays(const PolarMesh& mesh, const Lattice& lattice, const DenseGrid& grid,
                   const std::vector<std::uint8_t>& wanted, std::size_t threads);
