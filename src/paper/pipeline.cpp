@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -34,7 +35,8 @@ std::vector<double> window_ranges(const SampleImage& samples, const CellRect& re
   return ranges;
 }
 
-/// Absolute errors of the fit at the patch's own cells that hold a sample; 0 elsewhere.
+/// Absolute errors of the fit at the patch's own cells that hold a sample, infinite if the fit
+/// represents nothing; 0 elsewhere.
 void store_errors(const PatchGrid& grid, std::size_t patch_row, std::size_t patch_column,
                   const std::vector<double>& ranges, const std::vector<double>& fitted,
                   SampleImage& errors) {
@@ -46,7 +48,8 @@ void store_errors(const PatchGrid& grid, std::size_t patch_row, std::size_t patc
                                static_cast<std::size_t>(column - all.column_begin);
       if (ranges[cell] <= 0) continue;
       errors.range[errors.index(static_cast<std::size_t>(row), static_cast<std::size_t>(column))] =
-          std::abs(fitted[cell] - ranges[cell]);
+          fitted.empty() ? std::numeric_limits<double>::infinity()
+                         : std::abs(fitted[cell] - ranges[cell]);
     }
   }
 }
@@ -67,8 +70,9 @@ std::vector<PatchFit> fit_pass(const PatchGrid& grid, const SampleImage& samples
       PatchFit& fit = patches[patch_row * grid.columns() + patch_column];
       fit = fit_patch(basis, window_ranges(samples, window), grid.roles(patch_row, patch_column),
                       settings);
-      store_errors(grid, patch_row, patch_column, window_ranges(judged, window),
-                   fitted_ranges(basis, fit), errors);
+      std::vector<double> fitted;
+      if (!fit.coefficients.empty()) fitted = fitted_ranges(basis, fit);
+      store_errors(grid, patch_row, patch_column, window_ranges(judged, window), fitted, errors);
     }
   });
   return patches;
