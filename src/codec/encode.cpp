@@ -25,6 +25,16 @@ struct Prepared {
   Detection detection;
 };
 
+/// The file's sensor describes the rows of its lattice: the rings as this scan shows them from the
+/// origin, which is not where the beams of every sensor start.
+void look_along_rings(Detection& detection) {
+  for (std::size_t k = 0; k < detection.sensor.rings.size(); ++k) {
+    Ring& ring = detection.sensor.rings[k];
+    ring.elevation = detection.ring_elevations[k];
+    ring.vertical_offset_m = 0;
+  }
+}
+
 Result<Prepared> prepare(const Cloud& cloud, const EncodeSettings& settings) {
   Prepared out{settings.paper, {}};
   CURLIDAR_TRY(validate(out.settings));
@@ -40,6 +50,7 @@ Result<Prepared> prepare(const Cloud& cloud, const EncodeSettings& settings) {
                  "code: they need a sensor that spins through the full turn"};
   }
   out.detection = std::move(detection);
+  if (out.settings.row_rule == RowRule::rings) look_along_rings(out.detection);
   return out;
 }
 

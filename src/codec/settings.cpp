@@ -67,6 +67,10 @@ std::vector<std::string> paper_preset_names() {
   return names;
 }
 
+std::string suggest_preset(const Detection& detection) {
+  return detection.range_p50_m < PaperSettings{}.min_range_m ? "indoor" : "outdoor";
+}
+
 Result<PaperSettings> paper_preset(std::string_view name) {
   for (const NamedPreset& preset : kPresets) {
     if (preset.name == name) return preset.make();

@@ -113,8 +113,12 @@ Result<Cloud> project(const Cloud& cloud, const Detection& detection,
   }
   ProjectionCounts local;
   const double max_range = resolve_max_range(settings.max_range, cloud, detection.sensor);
+  const Lattice lattice =
+      settings.row_rule == RowRule::rings
+          ? Lattice::from_rings(detection.ring_elevations, settings.columns)
+          : make_lattice(settings, detection.sensor);
   const RangeImage image =
-      fill_range_image(cloud, detection.ring_of_point, make_lattice(settings, detection.sensor),
+      fill_range_image(cloud, detection.ring_of_point, lattice,
                        settings.row_rule, settings.min_range_m, max_range, {}, local);
   std::vector<std::uint32_t> sources(image.source);
   std::replace(sources.begin(), sources.end(), kNoPoint, 0u);

@@ -254,6 +254,16 @@ TEST(Codec, RejectsWhatItCannotCode) {
   EXPECT_EQ(encode(scan, settings).error().code, ErrorCode::unsupported);
 }
 
+TEST(Codec, PresetSuitsTheScan) {
+  EXPECT_EQ(suggest_preset(detect_sensor(small_scan("room")).value()), "indoor");
+  const SensorProfile hdl = builtin_sensor("hdl64e-kitti").value();
+  EXPECT_EQ(suggest_preset(detect_sensor(small_scan("street", hdl)).value()), "outdoor");
+  for (const std::string& name : paper_preset_names()) {
+    EXPECT_TRUE(paper_preset(name)) << name;
+  }
+  EXPECT_FALSE(paper_preset("auto"));
+}
+
 TEST(Codec, DecodeRespectsItsLimits) {
   const auto bytes = encode(small_scan(), small_settings())->bytes;
   EXPECT_EQ(decode(bytes, {.max_cells = 100}).error().code, ErrorCode::limit_exceeded);
