@@ -54,6 +54,11 @@ const std::vector<Reference> kReferences{
     {"baseline, degree 64", Profile::paper_global, 4, 7.50, {{1, 1, .083, .124}}},
 };
 
+/// A figure of the reference, "-" where it has none.
+std::string known(double reference) {
+  return reference == 0 ? "-" : fmt::format("{:.4f}", reference);
+}
+
 std::string verdict(double ours, double reference) {
   if (reference == 0) return "-";
   return ours <= reference * kTolerance ? "yes" : "NO";
@@ -81,12 +86,12 @@ bool print_densities(const Reference& reference, const DecodedScan& decoded, con
     const std::string b = verdict(near->b_to_a.mean, density.to_reconstructed);
     holds = holds && a != "NO" && b != "NO";
     fmt::print(
-        "| {}, {}x{} | {} | {:.4f} / {:.4f} / {:.3f} | {:.4f} | {} | {:.4f} / {:.4f} / {:.3f} | "
-        "{:.4f} | {} "
+        "| {}, {}x{} | {} | {:.4f} / {:.4f} / {:.3f} | {} | {} | {:.4f} / {:.4f} / {:.3f} | {} | "
+        "{} "
         "| {:.4f} | {:.4f} |\n",
         reference.name, density.rows, density.columns, cloud->size(), near->a_to_b.mean,
-        near->a_to_b.std, near->a_to_b.p95, density.to_original, a, near->b_to_a.mean,
-        near->b_to_a.std, near->b_to_a.p95, density.to_reconstructed, b, far->a_to_b.mean,
+        near->a_to_b.std, near->a_to_b.p95, known(density.to_original), a, near->b_to_a.mean,
+        near->b_to_a.std, near->b_to_a.p95, known(density.to_reconstructed), b, far->a_to_b.mean,
         far->b_to_a.mean);
   }
   return holds;
