@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "common_paper.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+namespace curlidar::app {
+namespace {
+
+constexpr const char* kGrid = "Grid";
+constexpr const char* kUpsampling = "Mesh and upsampling";
+constexpr const char* kFit = "Patches and fit";
+
+std::string joined(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+template <class T>
+CLI::Option* PaperOptions::add_number(CLI::App& app, const std::string& name,
+                                      T& (*field)(PaperSettings&), const char* help) {
+  PaperSettings defaults;
+  const auto store = [this, field](const T& value) {
+    overrides_.push_back([field, value](PaperSettings& settings) { field(settings) = value; });
+  };
+  return app.add_option_function<T>(name, store, help)
+      ->default_str(fmt::format("{}", field(defaults)));
+}
+
+void PaperOptions::add_grid(CLI::App& app, const std::string& prefix) {
+  app.add_option("--preset", preset_, "Parameters for a kind of scan: " +
+                                          joined(paper_preset_names()))
+      ->capture_default_str()
+      ->group(kGrid);
+  app.add_option("--sensor", sensor_, kSensorHelp)->capture_default_str()->group(kGrid);
+  const std::string rows = "--" + prefix + "rows";
+  app.add_option_function<std::string>(
+         rows,
+         [this, rows](const std::string& text) {
+           const RowChoice choice = parse_rows(text, rows.c_str());
+           overrides_.push_back([choice](PaperSettings& s) {
+             s.row_rule = choice.rule;
+             s.rows = choice.rows;
+           });
+         },
+         "Rows of the grid: uniform (one for each ring, evenly spaced), rings (at the true "
+         "elevations) or a number of uniform rows")
+      ->default_str("uniform")
+      ->group(kGrid);
+  add_number<std::uint32_t>(
+      app, "--" + prefix + "cols", [](PaperSettings& s) -> auto& { return s.columns; },
+      "Columns of the grid, N_h")
+      ->check(CLI::Range(4, 65536))
+      ->group(kGrid);
+  add_number<double>(
+      app, "--min-range", [](PaperSettings& s) -> auto& { return s.min_range_m; },
+      "Drop returns nearer than this, metres")
+      ->check(CLI::Range(0.0, 1e6))
+      ->group(kGrid);
+  app.add_option_function<std::string>(
+         "--max-range",
+         [this](const std::string& text) {
+           const RangeLimit limit = parse_range_limit(text, "--max-range");
+           overrides_.push_back([limit](PaperSettings& s) { s.max_range = limit; });
+         },
+         "Drop returns farther than this: metres, p90 for the 90th percentile of range, or max "
+         "for the sensor's own limit")
+      ->default_str("p90")
+      ->group(kGrid);
+  add_number<double>(
+      app, "--outlier-radius", [](PaperSettings& s) -> auto& { return s.outlier_radius_m; },
+      "Outlier filter: neighbourhood, metres; 0 switches it off")
+      ->check(CLI::Range(0.0, 1e6))
+      ->group(kGrid);
+  add_number<std::uint32_t>(
+      app, "--outlier-min", [](PaperSettings& s) -> auto& { return s.outlier_min_points; },
+      "Outlier filter: returns wanted in the neighbourhood, itself included")
+      ->group(kGrid);
+}
+
+void PaperOptions::add_upsample(CLI::App& app) {
+  app.add_option_function<std::string>(
+         "--upsample",
+         [this](const std::string& text) {
+           const auto factors = parse_whole_factors(text, "--upsample");
+           overrides_.push_back([factors](PaperSettings& s) {
+             s.upsample_rows = factors.rows;
+             s.upsample_columns = factors.columns;
+           });
+         },
+         "Virtual LiDAR, S_row x S_col times denser (paper-1to1: 1x1)")
+      ->type_name("RxC")
+      ->default_str("2x2")
+      ->group(kUpsampling);
+}
+
+void PaperOptions::add_cliffs(CLI::App& app) {
+  const auto metres = CLI::Range(0.0, 1e6);
+  add_number<double>(
+      app, "--cliff-row", [](PaperSettings& s) -> auto& { return s.cliffs.row_m; },
+      "The surface is broken between rows farther apart than this, metres")
+      ->check(metres)
+      ->group(kUpsampling);
+  add_number<double>(
+      app, "--cliff-col", [](PaperSettings& s) -> auto& { return s.cliffs.column_m; },
+      "The same between columns, metres")
+      ->check(metres)
+      ->group(kUpsampling);
+  add_number<double>(
+      app, "--cliff-diag", [](PaperSettings& s) -> auto& { return s.cliffs.diagonal_m; },
+      "The same to the diagonal neighbour, metres")
+      ->check(metres)
+      ->group(kUpsampling);
+  add_number<double>(
+      app, "--refuse-triangles",
+      [](PaperSettings& s) -> auto& { return s.refused_triangle_share; },
+      "Share of the triangles, the largest ones, whose hits are refused")
+      ->check(CLI::Range(0.0, 1.0))
+      ->group(kUpsampling);
+}
+
+void PaperOptions::add_fit(CLI::App& app) {
+  app.add_option("--profile", profile_,
+                 "paper (CURL, RSS 2022), paper-1to1 (tuned for 1:1 reconstruction) or "
+                 "paper-global (the paper's baseline: one expansion of the whole scan)")
+      ->capture_default_str();
+  app.add_option("--attributes", attributes_,
+                 "Attributes to keep: all, none, or names such as intensity,ring")
+      ->capture_default_str();
+  const auto positive = CLI::Range(1, 65536);
+  add_number<std::uint32_t>(
+      app, "--patch", [](PaperSettings& s) -> auto& { return s.patch; },
+      "Size of a patch in grid cells, P_r")
+      ->check(positive)
+      ->group(kFit);
+  add_number<std::uint32_t>(
+      app, "--overlap", [](PaperSettings& s) -> auto& { return s.overlap; },
+      "Extended cells on every side of a patch, in upsampled cells (paper-1to1: 0)")
+      ->check(CLI::Range(0, 65536))
+      ->group(kFit);
+  add_number<double>(
+      app, "--accept", [](PaperSettings& s) -> auto& { return s.accept_m; },
+      "Mean training error at which a degree is accepted, metres (paper-1to1: 0.01)")
+      ->check(CLI::Range(0.0, 1e6))
+      ->group(kFit);
+  add_number<double>(
+      app, "--reject", [](PaperSettings& s) -> auto& { return s.reject_m; },
+      "Samples this far off are removed after the first pass, metres")
+      ->check(CLI::Range(0.0, 1e6))
+      ->group(kFit);
+  add_number<std::uint32_t>(
+      app, "--max-degree", [](PaperSettings& s) -> auto& { return s.max_degree; },
+      "Largest degree of a patch")
+      ->check(CLI::Range(0, 100))
+      ->group(kFit);
+  add_number<double>(
+      app, "--k", [](PaperSettings& s) -> auto& { return s.k; },
+      "Degree at which training and testing errors weigh the same")
+      ->check(CLI::Range(0.0, 1e6))
+      ->group(kFit);
+  add_number<bool>(
+      app, "--error-stop", [](PaperSettings& s) -> auto& { return s.stop_on_total_error; },
+      "Stop when the weighted error E_t rises (paper-1to1: false)")
+      ->group(kFit);
+  add_number<std::uint32_t>(
+      app, "--global-degree", [](PaperSettings& s) -> auto& { return s.global_degree; },
+      "Degree of paper-global")
+      ->check(CLI::Range(0, 1000))
+      ->group(kFit);
+  add_number<double>(
+      app, "--global-reject", [](PaperSettings& s) -> auto& { return s.global_reject_m; },
+      "paper-global masks reconstructed cells this far off, metres")
+      ->check(CLI::Range(0.0, 1e6))
+      ->group(kFit);
+}
+
+EncodeSettings PaperOptions::settings(std::size_t threads) const {
+  EncodeSettings settings;
+  settings.profile = need_option(profile_by_name(profile_));
+  settings.paper = for_profile(need_option(paper_preset(preset_)), settings.profile);
+  for (const Override& apply : overrides_) apply(settings.paper);
+  settings.sensor = parse_sensor(sensor_);
+  settings.attributes = parse_attribute_list(attributes_);
+  settings.threads = threads;
+  return settings;
+}
+
+}  // namespace curlidar::app

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "common_inputs.hpp"
+#include "common_paper.hpp"
+
+namespace curlidar::app {
+namespace {
+
+constexpr const char* kFooter = R"(Examples:
+  curlidar encode scan.pcd                        makes scan.curl beside it
+  curlidar encode scans/*.bin -o out/             many scans
+  curlidar encode scan.bin --sensor hdl64e-kitti --attributes none
+  curlidar encode room.pcd --preset indoor --upsample 1x1 -o room.curl
+  curlidar encode - --format pcd <scan.pcd >scan.curl
+The order is: preset, then what the profile changes, then the options given here.)";
+
+struct Options {
+  CommonOptions common;
+  PaperOptions paper;
+  std::vector<std::string> inputs, metadata;
+  std::string output, format;
+};
+
+std::map<std::string, std::string> parse_metadata(const std::vector<std::string>& pairs) {
+  std::map<std::string, std::string> metadata;
+  for (const std::string& pair : pairs) {
+    const std::size_t equals = pair.find('=');
+    if (equals == 0 || equals == std::string::npos) {
+      usage_error(fmt::format("--meta '{}': give key=value, such as frame_id=velodyne", pair));
+    }
+    metadata[pair.substr(0, equals)] = pair.substr(equals + 1);
+  }
+  return metadata;
+}
+
+Json report_json(const EncodeReport& report, const EncodeSettings& settings) {
+  Json stages = Json::object();
+  for (const StageTime& stage : report.stages_ms) stages[stage.stage] = stage.ms;
+  Json degrees = Json::object();
+  for (std::size_t d = 0; d < report.degrees.size(); ++d) {
+    if (report.degrees[d] != 0) degrees[std::to_string(d)] = report.degrees[d];
+  }
+  const ProjectionCounts& counts = report.projection;
+  return {{"profile", to_string(settings.profile)},
+          {"sensor", report.sensor},
+          {"points_in", report.points_in},
+          {"points_coded", report.points_coded},
+          {"bytes", report.bytes},
+          {"bits_per_point", report.bits_per_point},
+          {"cp_paper_percent", report.cp_paper_percent},
+          {"coefficients", report.coefficients},
+          {"patches", report.patches},
+          {"degrees", degrees},
+          {"points_upsampled", report.points_upsampled},
+          {"dropped",
+           {{"outliers", counts.outliers},
+            {"out_of_range", counts.out_of_range},
+            {"out_of_fov", counts.out_of_fov},
+            {"collided", counts.collided}}},
+          {"stages_ms", stages}};
+}
+
+std::string drop_text(std::size_t count, const EncodeReport& report, const char* reason) {
+  const double share = 100.0 * static_cast<double>(count) /
+                       static_cast<double>(std::max<std::size_t>(report.points_in, 1));
+  return fmt::format("{:>10}  {:4.1f} %  {}\n", count_text(count), share, reason);
+}
+
+std::string report_text(const Job& job, const EncodeReport& report,
+                        const EncodeSettings& settings) {
+  Table table;
+  table.add({"profile", to_string(settings.profile)});
+  table.add({"sensor", report.sensor});
+  table.add({"points in", count_text(report.points_in)});
+  table.add({"points coded", count_text(report.points_coded)});
+  table.add({"size", bytes_text(report.bytes)});
+  table.add({"bits per point in", fmt::format("{:.2f}", report.bits_per_point)});
+  table.add({"CP of the paper", fmt::format("{:.2f} %", report.cp_paper_percent)});
+  table.add({"patches", count_text(report.patches)});
+  table.add({"coefficients", count_text(report.coefficients)});
+  std::string text = fmt::format("{} -> {}\n{}", job.input, job.output, table.text());
+  const ProjectionCounts& counts = report.projection;
+  text += "Returns that are not coded one for one:\n";
+  text += drop_text(counts.out_of_range, report, "out of range");
+  text += drop_text(counts.out_of_fov, report, "outside the nominal field of view");
+  text += drop_text(counts.outliers, report, "outliers (too few neighbours)");
+  text += drop_text(counts.collided, report, "share a cell with a return nearer its centre");
+  if (counts.kept > report.points_coded) {
+    text += drop_text(counts.kept - report.points_coded, report, "not explained by the fit");
+  }
+  Table stages;
+  double total = 0;
+  for (const StageTime& stage : report.stages_ms) {
+    stages.add({stage.stage, milliseconds_text(stage.ms)});
+    total += stage.ms;
+  }
+  stages.add({"total", milliseconds_text(total)});
+  return text + "Time:\n" + stages.text();
+}
+
+std::string report_line(const Job& job, const EncodeReport& report) {
+  return fmt::format("{} -> {}  {} points, {}, {:.2f} bits a point\n", job.input, job.output,
+                     count_text(report.points_in), bytes_text(report.bytes),
+                     report.bits_per_point);
+}
+
+int run(const Options& options) {
+  const EncodeSettings settings = options.paper.settings(options.common.threads);
+  const auto metadata = parse_metadata(options.metadata);
+  const auto format = parse_format(options.format);
+  const std::vector<Job> jobs = plan_jobs(options.inputs, options.output, ".curl");
+  return for_each_job(options.common, jobs, [&](const Job& job, const ProgressCallback& progress) {
+    ReadOptions read_options;
+    read_options.format = format;
+    Cloud cloud = need(read_cloud(job.input, read_options));
+    if (job.input != "-") {
+      cloud.metadata["source"] = std::filesystem::path(job.input).filename().string();
+    }
+    for (const auto& [key, value] : metadata) cloud.metadata[key] = value;
+    const Encoded encoded = need(encode(cloud, settings, progress));
+    need(write_file(job.output, encoded.bytes));
+    return Outcome{report_json(encoded.report, settings),
+                   jobs.size() == 1 ? report_text(job, encoded.report, settings)
+                                    : report_line(job, encoded.report)};
+  });
+}
+
+}  // namespace
+
+Command add_encode(CLI::App& root) {
+  CLI::App* app = root.add_subcommand("encode", "Code scans into small continuous .curl files");
+  app->footer(kFooter);
+  const auto options = std::make_shared<Options>();
+  app->add_option("inputs", options->inputs, "Scans; - is standard input")->required();
+  app->add_option("-o,--output", options->output,
+                  "File, or directory for many inputs; default beside the input, - is standard "
+                  "output");
+  app->add_option("--format", options->format,
+                  fmt::format("Format of the input: {}; default by content", kFormatNames));
+  app->add_option("--meta", options->metadata, "key=value kept in the file; repeatable")
+      ->allow_extra_args(false);
+  options->paper.add_fit(*app);
+  options->paper.add_grid(*app);
+  options->paper.add_upsample(*app);
+  options->paper.add_cliffs(*app);
+  add_common_options(*app, options->common);
+  return {app, [options] { return run(*options); }};
+}
+
+}  // namespace curlidar::app
