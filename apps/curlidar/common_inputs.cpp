@@ -23,9 +23,9 @@ void make_directory(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (error) {
-    throw Failure({ErrorCode::io, fmt::format("{}: cannot make this directory: {}", path,
-                                              error.message())},
-                  kExitFile);
+    throw Failure(
+        {ErrorCode::io, fmt::format("{}: cannot make this directory: {}", path, error.message())},
+        kExitFile);
   }
 }
 
@@ -42,9 +42,10 @@ void check_jobs(const std::vector<Job>& jobs) {
     if (job.output == "-") continue;
     const auto [place, first] = made.emplace(normal(job.output), &job);
     if (!first) {
-      usage_error(fmt::format("{} and {} would both become {}: give them different names or "
-                              "run them apart",
-                              place->second->input, job.input, job.output));
+      usage_error(
+          fmt::format("{} and {} would both become {}: give them different names or "
+                      "run them apart",
+                      place->second->input, job.input, job.output));
     }
   }
   for (const Job& job : jobs) {
@@ -188,10 +189,10 @@ void keep_attributes(Cloud& cloud, const std::optional<std::vector<std::string>>
     if (attribute == nullptr) {
       std::string known;
       for (const Attribute& a : cloud.attributes) known += (known.empty() ? "" : ", ") + a.name;
-      throw Failure({ErrorCode::invalid_argument,
-                     fmt::format("no attribute '{}'; this cloud has {}", name,
-                                 known.empty() ? "none" : known)},
-                    kExitInput);
+      throw Failure(
+          {ErrorCode::invalid_argument, fmt::format("no attribute '{}'; this cloud has {}", name,
+                                                    known.empty() ? "none" : known)},
+          kExitInput);
     }
     kept.push_back(*attribute);
   }

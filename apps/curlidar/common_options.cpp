@@ -29,8 +29,8 @@ RowsByColumns<T> parse_pair(const std::string& text, const char* option, const c
                     pair.rows > 0 && pair.columns > 0 && pair.rows <= 65536 &&
                     pair.columns <= 65536;
   if (!good) {
-    usage_error(fmt::format("{} '{}': give ROWSxCOLUMNS, two {} above 0, such as 2x2", option, text,
-                            kind));
+    usage_error(
+        fmt::format("{} '{}': give ROWSxCOLUMNS, two {} above 0, such as 2x2", option, text, kind));
   }
   return pair;
 }
@@ -81,8 +81,8 @@ RangeLimit parse_range_limit(const std::string& text, const char* option) {
   const bool good = parse_whole_text(std::string_view(text).substr(percentile ? 1 : 0), value) &&
                     value > 0 && value <= (percentile ? 100 : 1e6);
   if (!good) {
-    usage_error(fmt::format("{} '{}': give metres (80), a percentile of range (p90) or max", option,
-                            text));
+    usage_error(
+        fmt::format("{} '{}': give metres (80), a percentile of range (p90) or max", option, text));
   }
   (percentile ? limit.percentile : limit.metres) = value;
   return limit;
@@ -95,8 +95,8 @@ std::optional<std::vector<std::string>> parse_attribute_list(const std::string& 
   for (std::size_t start = 0; start <= text.size();) {
     const std::size_t comma = std::min(text.find(',', start), text.size());
     if (comma == start) {
-      usage_error(fmt::format(
-          "--attributes '{}': give all, none, or names such as intensity,ring", text));
+      usage_error(
+          fmt::format("--attributes '{}': give all, none, or names such as intensity,ring", text));
     }
     names.push_back(text.substr(start, comma - start));
     start = comma + 1;

@@ -51,8 +51,7 @@ struct Command {
 /// caught in two places only: around each input, and in main.
 class Failure : public std::runtime_error {
  public:
-  Failure(Error error, ExitCode code)
-      : std::runtime_error(error.message), code_(code) {}
+  Failure(Error error, ExitCode code) : std::runtime_error(error.message), code_(code) {}
   ExitCode code() const { return code_; }
 
  private:

@@ -30,8 +30,8 @@ CLI::Option* PaperOptions::add_number(CLI::App& app, const std::string& name,
 }
 
 void PaperOptions::add_grid(CLI::App& app, const std::string& prefix) {
-  app.add_option("--preset", preset_, "Parameters for a kind of scan: " +
-                                          joined(paper_preset_names()))
+  app.add_option("--preset", preset_,
+                 "Parameters for a kind of scan: " + joined(paper_preset_names()))
       ->capture_default_str()
       ->group(kGrid);
   app.add_option("--sensor", sensor_, kSensorHelp)->capture_default_str()->group(kGrid);
@@ -50,12 +50,12 @@ void PaperOptions::add_grid(CLI::App& app, const std::string& prefix) {
       ->default_str("uniform")
       ->group(kGrid);
   add_number<std::uint32_t>(
-      app, "--" + prefix + "cols", [](PaperSettings& s) -> auto& { return s.columns; },
+      app, "--" + prefix + "cols", [](PaperSettings & s) -> auto& { return s.columns; },
       "Columns of the grid, N_h")
       ->check(CLI::Range(4, 65536))
       ->group(kGrid);
   add_number<double>(
-      app, "--min-range", [](PaperSettings& s) -> auto& { return s.min_range_m; },
+      app, "--min-range", [](PaperSettings & s) -> auto& { return s.min_range_m; },
       "Drop returns nearer than this, metres")
       ->check(CLI::Range(0.0, 1e6))
       ->group(kGrid);
@@ -70,12 +70,12 @@ void PaperOptions::add_grid(CLI::App& app, const std::string& prefix) {
       ->default_str("p90")
       ->group(kGrid);
   add_number<double>(
-      app, "--outlier-radius", [](PaperSettings& s) -> auto& { return s.outlier_radius_m; },
+      app, "--outlier-radius", [](PaperSettings & s) -> auto& { return s.outlier_radius_m; },
       "Outlier filter: neighbourhood, metres; 0 switches it off")
       ->check(CLI::Range(0.0, 1e6))
       ->group(kGrid);
   add_number<std::uint32_t>(
-      app, "--outlier-min", [](PaperSettings& s) -> auto& { return s.outlier_min_points; },
+      app, "--outlier-min", [](PaperSettings & s) -> auto& { return s.outlier_min_points; },
       "Outlier filter: returns wanted in the neighbourhood, itself included")
       ->group(kGrid);
 }
@@ -99,23 +99,23 @@ void PaperOptions::add_upsample(CLI::App& app) {
 void PaperOptions::add_cliffs(CLI::App& app) {
   const auto metres = CLI::Range(0.0, 1e6);
   add_number<double>(
-      app, "--cliff-row", [](PaperSettings& s) -> auto& { return s.cliffs.row_m; },
+      app, "--cliff-row", [](PaperSettings & s) -> auto& { return s.cliffs.row_m; },
       "The surface is broken between rows farther apart than this, metres")
       ->check(metres)
       ->group(kUpsampling);
   add_number<double>(
-      app, "--cliff-col", [](PaperSettings& s) -> auto& { return s.cliffs.column_m; },
+      app, "--cliff-col", [](PaperSettings & s) -> auto& { return s.cliffs.column_m; },
       "The same between columns, metres")
       ->check(metres)
       ->group(kUpsampling);
   add_number<double>(
-      app, "--cliff-diag", [](PaperSettings& s) -> auto& { return s.cliffs.diagonal_m; },
+      app, "--cliff-diag", [](PaperSettings & s) -> auto& { return s.cliffs.diagonal_m; },
       "The same to the diagonal neighbour, metres")
       ->check(metres)
       ->group(kUpsampling);
   add_number<double>(
       app, "--refuse-triangles",
-      [](PaperSettings& s) -> auto& { return s.refused_triangle_share; },
+      [](PaperSettings & s) -> auto& { return s.refused_triangle_share; },
       "Share of the triangles, the largest ones, whose hits are refused")
       ->check(CLI::Range(0.0, 1.0))
       ->group(kUpsampling);
@@ -131,46 +131,46 @@ void PaperOptions::add_fit(CLI::App& app) {
       ->capture_default_str();
   const auto positive = CLI::Range(1, 65536);
   add_number<std::uint32_t>(
-      app, "--patch", [](PaperSettings& s) -> auto& { return s.patch; },
+      app, "--patch", [](PaperSettings & s) -> auto& { return s.patch; },
       "Size of a patch in grid cells, P_r")
       ->check(positive)
       ->group(kFit);
   add_number<std::uint32_t>(
-      app, "--overlap", [](PaperSettings& s) -> auto& { return s.overlap; },
+      app, "--overlap", [](PaperSettings & s) -> auto& { return s.overlap; },
       "Extended cells on every side of a patch, in upsampled cells (paper-1to1: 0)")
       ->check(CLI::Range(0, 65536))
       ->group(kFit);
   add_number<double>(
-      app, "--accept", [](PaperSettings& s) -> auto& { return s.accept_m; },
+      app, "--accept", [](PaperSettings & s) -> auto& { return s.accept_m; },
       "Mean training error at which a degree is accepted, metres (paper-1to1: 0.01)")
       ->check(CLI::Range(0.0, 1e6))
       ->group(kFit);
   add_number<double>(
-      app, "--reject", [](PaperSettings& s) -> auto& { return s.reject_m; },
+      app, "--reject", [](PaperSettings & s) -> auto& { return s.reject_m; },
       "Samples this far off are removed after the first pass, metres")
       ->check(CLI::Range(0.0, 1e6))
       ->group(kFit);
   add_number<std::uint32_t>(
-      app, "--max-degree", [](PaperSettings& s) -> auto& { return s.max_degree; },
+      app, "--max-degree", [](PaperSettings & s) -> auto& { return s.max_degree; },
       "Largest degree of a patch")
       ->check(CLI::Range(0, 100))
       ->group(kFit);
   add_number<double>(
-      app, "--k", [](PaperSettings& s) -> auto& { return s.k; },
+      app, "--k", [](PaperSettings & s) -> auto& { return s.k; },
       "Degree at which training and testing errors weigh the same")
       ->check(CLI::Range(0.0, 1e6))
       ->group(kFit);
   add_number<bool>(
-      app, "--error-stop", [](PaperSettings& s) -> auto& { return s.stop_on_total_error; },
+      app, "--error-stop", [](PaperSettings & s) -> auto& { return s.stop_on_total_error; },
       "Stop when the weighted error E_t rises (paper-1to1: false)")
       ->group(kFit);
   add_number<std::uint32_t>(
-      app, "--global-degree", [](PaperSettings& s) -> auto& { return s.global_degree; },
+      app, "--global-degree", [](PaperSettings & s) -> auto& { return s.global_degree; },
       "Degree of paper-global")
       ->check(CLI::Range(0, 1000))
       ->group(kFit);
   add_number<double>(
-      app, "--global-reject", [](PaperSettings& s) -> auto& { return s.global_reject_m; },
+      app, "--global-reject", [](PaperSettings & s) -> auto& { return s.global_reject_m; },
       "paper-global masks reconstructed cells this far off, metres")
       ->check(CLI::Range(0.0, 1e6))
       ->group(kFit);

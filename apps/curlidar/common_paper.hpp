@@ -16,7 +16,8 @@ namespace curlidar::app {
 /// options given one by one. The object must live as long as the CLI::App.
 class PaperOptions {
  public:
-  /// --preset, --sensor, the grid, range limits, outlier filter. `prefix` goes before rows and cols.
+  /// --preset, --sensor, the grid, range limits, outlier filter. `prefix` goes before rows and
+  /// cols.
   void add_grid(CLI::App& app, const std::string& prefix = "");
   /// --upsample RxC.
   void add_upsample(CLI::App& app);
@@ -32,8 +33,8 @@ class PaperOptions {
   using Override = std::function<void(PaperSettings&)>;
   /// A number of the table: its default is read from, and its value written to, `field`.
   template <class T>
-  CLI::Option* add_number(CLI::App& app, const std::string& name,
-                          T& (*field)(PaperSettings&), const char* help);
+  CLI::Option* add_number(CLI::App& app, const std::string& name, T& (*field)(PaperSettings&),
+                          const char* help);
 
   std::string profile_ = "paper", preset_ = "outdoor", sensor_ = "auto", attributes_ = "all";
   std::vector<Override> overrides_;

@@ -28,12 +28,18 @@ struct Options {
 
 const char* suffix_of(CloudFormat format) {
   switch (format) {
-    case CloudFormat::pcd: return ".pcd";
-    case CloudFormat::ply: return ".ply";
-    case CloudFormat::kitti: return ".bin";
-    case CloudFormat::nuscenes: return ".pcd.bin";
-    case CloudFormat::npy: return ".npy";
-    case CloudFormat::csv: return ".csv";
+    case CloudFormat::pcd:
+      return ".pcd";
+    case CloudFormat::ply:
+      return ".ply";
+    case CloudFormat::kitti:
+      return ".bin";
+    case CloudFormat::nuscenes:
+      return ".pcd.bin";
+    case CloudFormat::npy:
+      return ".npy";
+    case CloudFormat::csv:
+      return ".csv";
   }
   return ".pcd";
 }
@@ -56,17 +62,17 @@ int run(const Options& options) {
   write_options.encoding = parse_encoding(options.encoding);
   const auto format = parse_format(options.format);
   const auto attributes = parse_attribute_list(options.attributes);
-  const auto jobs = plan_jobs(inputs, output,
-                              suffix_of(write_options.format.value_or(CloudFormat::pcd)));
+  const auto jobs =
+      plan_jobs(inputs, output, suffix_of(write_options.format.value_or(CloudFormat::pcd)));
   return for_each_job(options.common, jobs, [&](const Job& job, const ProgressCallback&) {
     Cloud cloud = load_cloud(job.input, format);
     const std::size_t points_in = cloud.size();
     if (options.drop_invalid) cloud = without_invalid(cloud);
     keep_attributes(cloud, attributes);
     save_cloud(job.output, cloud, write_options);
-    return Outcome{{{"points_in", points_in}, {"points", cloud.size()}},
-                   fmt::format("{} -> {}  {} points\n", job.input, job.output,
-                               count_text(cloud.size()))};
+    return Outcome{
+        {{"points_in", points_in}, {"points", cloud.size()}},
+        fmt::format("{} -> {}  {} points\n", job.input, job.output, count_text(cloud.size()))};
   });
 }
 

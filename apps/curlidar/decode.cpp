@@ -36,12 +36,18 @@ std::optional<CloudFormat> parse_output_format(const std::string& name) {
 std::string suffix_of(const std::optional<CloudFormat>& format) {
   if (!format) return ".decoded.pcd";
   switch (*format) {
-    case CloudFormat::pcd: return ".decoded.pcd";
-    case CloudFormat::ply: return ".decoded.ply";
-    case CloudFormat::kitti: return ".decoded.bin";
-    case CloudFormat::nuscenes: return ".decoded.pcd.bin";
-    case CloudFormat::npy: return ".decoded.npy";
-    case CloudFormat::csv: return ".decoded.csv";
+    case CloudFormat::pcd:
+      return ".decoded.pcd";
+    case CloudFormat::ply:
+      return ".decoded.ply";
+    case CloudFormat::kitti:
+      return ".decoded.bin";
+    case CloudFormat::nuscenes:
+      return ".decoded.pcd.bin";
+    case CloudFormat::npy:
+      return ".decoded.npy";
+    case CloudFormat::csv:
+      return ".decoded.csv";
   }
   return ".decoded.pcd";
 }
@@ -57,8 +63,7 @@ int run(const Options& options) {
   write_options.format = parse_output_format(options.format);
   write_options.encoding = parse_encoding(options.encoding);
   const auto attributes = parse_attribute_list(options.attributes);
-  const auto jobs =
-      plan_jobs(options.inputs, options.output, suffix_of(write_options.format));
+  const auto jobs = plan_jobs(options.inputs, options.output, suffix_of(write_options.format));
   return for_each_job(options.common, jobs, [&](const Job& job, const ProgressCallback& progress) {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();

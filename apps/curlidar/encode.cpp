@@ -107,8 +107,7 @@ std::string report_text(const Job& job, const EncodeReport& report,
 
 std::string report_line(const Job& job, const EncodeReport& report) {
   return fmt::format("{} -> {}  {} points, {}, {:.2f} bits a point\n", job.input, job.output,
-                     count_text(report.points_in), bytes_text(report.bytes),
-                     report.bits_per_point);
+                     count_text(report.points_in), bytes_text(report.bytes), report.bits_per_point);
 }
 
 int run(const Options& options) {

@@ -24,7 +24,9 @@ struct Options {
   std::string name;
 };
 
-double degrees(double radians) { return radians * 180 / std::numbers::pi; }
+double degrees(double radians) {
+  return radians * 180 / std::numbers::pi;
+}
 
 Json sensor_json(const SensorProfile& sensor) {
   std::vector<double> elevations_deg;

@@ -78,6 +78,18 @@ struct DecodedScan {
 /// Reads a .curl file. Never throws, whatever the bytes.
 Result<DecodedScan> decode(std::span<const std::byte> bytes, const DecodeLimits& limits = {});
 
+/// Whether the bytes start as a .curl file of any version does.
+bool is_curl(std::span<const std::byte> bytes);
+
+/// One chunk of a .curl file, in file order.
+struct ChunkInfo {
+  std::string name;        ///< "sensor", "patches", ...
+  std::size_t offset = 0;  ///< of its payload in the file
+  std::size_t bytes = 0;   ///< of its payload, as stored
+};
+/// Where the bytes of a file go. Checks the container, not what the chunks hold.
+Result<std::vector<ChunkInfo>> list_chunks(std::span<const std::byte> bytes);
+
 struct ReconstructSettings {
   double rows = 1;         ///< R_row: factor on the coded lattice's rows, may be fractional, > 0
   double columns = 1;      ///< R_col

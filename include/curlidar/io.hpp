@@ -6,6 +6,7 @@
 // of their own type, bit by bit. Writers use the position type again.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -79,6 +80,12 @@ Result<std::vector<std::byte>> format_cloud(const Cloud& cloud, const std::strin
 /// Writes a cloud; "-" is standard output. Atomic: the file appears whole or not at all.
 /// An attribute that the format cannot hold is an error, never dropped silently.
 Status write_cloud(const std::string& path, const Cloud& cloud, const WriteOptions& options = {});
+
+/// Writes a triangle mesh with float32 vertices: OBJ if `path` ends in .obj, otherwise PLY in the
+/// given encoding (ascii or binary, little endian). "-" is standard output. Atomic.
+Status write_mesh(const std::string& path, std::span<const Vec3> vertices,
+                  std::span<const std::array<std::uint32_t, 3>> triangles,
+                  Encoding encoding = Encoding::binary);
 
 /// Whole-file helpers used by every command ("-" is standard input/output; writes are atomic).
 Result<std::vector<std::byte>> read_file(const std::string& path);

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "commands.hpp"
+#include "common_inputs.hpp"
+
+namespace curlidar::app {
+namespace {
+
+constexpr const char* kFooter = R"(Examples:
+  curlidar info scan.bin                        what --sensor auto sees
+  curlidar info scan.pcd --sensor os1-64        the same scan through a given profile
+  curlidar info scan.curl --json)";
+
+struct Options {
+  CommonOptions common;
+  std::vector<std::string> inputs;
+  std::string format, sensor = "auto";
+};
+
+double degrees(double radians) {
+  return radians * 180 / std::numbers::pi;
+}
+
+std::vector<double> elevations_deg(const SensorProfile& sensor) {
+  std::vector<double> values;
+  for (const double elevation : sensor.elevations()) values.push_back(degrees(elevation));
+  return values;
+}
+
+/// "  ring 0   +2.00 +1.66 ..." eight to a line.
+std::string elevation_table(const std::vector<double>& elevations) {
+  constexpr std::size_t kPerLine = 8;
+  std::string text = "elevations, degrees, from the top ring:\n";
+  for (std::size_t i = 0; i < elevations.size(); i += kPerLine) {
+    text += fmt::format("  {:>4}:", i);
+    for (std::size_t j = i; j < std::min(i + kPerLine, elevations.size()); ++j) {
+      text += fmt::format(" {:>+7.2f}", elevations[j]);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string attribute_names(const std::vector<Attribute>& attributes) {
+  std::string text;
+  for (const Attribute& attribute : attributes) {
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", attribute.name,
+                        to_string(type_of(attribute.values)));
+  }
+  return text.empty() ? "none" : text;
+}
+
+Json attribute_json(const std::vector<Attribute>& attributes) {
+  Json json = Json::array();
+  for (const Attribute& attribute : attributes) {
+    json.push_back({{"name", attribute.name},
+                    {"type", to_string(type_of(attribute.values))},
+                    {"components", attribute.components}});
+  }
+  return json;
+}
+
+Json scan_json(const Cloud& cloud, const Detection& found) {
+  const bool spinning = found.sensor.pattern == ScanPattern::spinning;
+  return {{"kind", "scan"},
+          {"sensor", found.sensor.name},
+          {"pattern", spinning ? "spinning" : "limited-field"},
+          {"ring_source", to_string(found.source)},
+          {"rings", found.sensor.rings.size()},
+          {"columns", found.sensor.columns},
+          {"fov_up_deg", degrees(found.sensor.fov_up)},
+          {"fov_down_deg", degrees(found.sensor.fov_down)},
+          {"elevations_deg", elevations_deg(found.sensor)},
+          {"elevation_min_deg", degrees(found.elevation_min)},
+          {"elevation_max_deg", degrees(found.elevation_max)},
+          {"slots", found.points},
+          {"returns", found.returns},
+          {"not_finite", found.not_finite},
+          {"zero", found.zero},
+          {"width", cloud.width},
+          {"height", cloud.height},
+          {"organised", cloud.organised()},
+          {"occupancy", found.occupancy},
+          {"azimuth_coverage", found.azimuth_coverage},
+          {"range_m",
+           {{"min", found.range_min_m},
+            {"p50", found.range_p50_m},
+            {"p90", found.range_p90_m},
+            {"max", found.range_max_m}}},
+          {"attributes", attribute_json(cloud.attributes)},
+          {"metadata", cloud.metadata},
+          {"notes", found.notes}};
+}
+
+std::string scan_text(const std::string& name, const Cloud& cloud, const Detection& found) {
+  const SensorProfile& sensor = found.sensor;
+  std::string text = fmt::format("{}\n", name);
+  const auto line = [&](const char* key, const std::string& value) {
+    text += fmt::format("  {:<12} {}\n", key, value);
+  };
+  line("sensor", sensor.name + (sensor.description.empty() ? "" : ": " + sensor.description));
+  line("rings", fmt::format("{}, told by {}", sensor.rings.size(), to_string(found.source)));
+  line("columns", fmt::format("{}", sensor.columns));
+  line("field",
+       fmt::format("{:+.2f} .. {:+.2f} deg nominal, {:+.2f} .. {:+.2f} deg seen, "
+                   "{:.0f} % of the turn",
+                   degrees(sensor.fov_up), degrees(sensor.fov_down), degrees(found.elevation_max),
+                   degrees(found.elevation_min), found.azimuth_coverage * 100));
+  line("returns",
+       fmt::format("{} of {} slots; {} not finite, {} at (0, 0, 0)", count_text(found.returns),
+                   count_text(found.points), count_text(found.not_finite), count_text(found.zero)));
+  line("layout", cloud.organised()
+                     ? fmt::format("organised, {} x {} (width x height)", cloud.width, cloud.height)
+                     : "unorganised");
+  line("occupancy", fmt::format("{:.1f} % of rings x columns", found.occupancy * 100));
+  line("range",
+       fmt::format("{:.2f} m .. {:.2f} m, median {:.2f} m, p90 {:.2f} m", found.range_min_m,
+                   found.range_max_m, found.range_p50_m, found.range_p90_m));
+  line("attributes", attribute_names(cloud.attributes));
+  for (const auto& [key, value] : cloud.metadata) line("metadata", key + " = " + value);
+  for (const std::string& note : found.notes) line("note", note);
+  return text + elevation_table(elevations_deg(sensor));
+}
+
+Outcome describe_scan(const Job& job, std::span<const std::byte> bytes, const Options& options,
+                      const std::optional<SensorProfile>& sensor) {
+  ReadOptions read_options;
+  read_options.format = parse_format(options.format);
+  const std::string name = job.input == "-" ? "standard input" : job.input;
+  const Cloud cloud = need(parse_cloud(bytes, name, read_options));
+  const Detection found = detect(cloud, sensor);
+  return {scan_json(cloud, found), scan_text(name, cloud, found)};
+}
+
+Json parameters_json(const PaperSettings& s) {
+  Json max_range = s.max_range.metres;
+  if (s.max_range.percentile > 0) max_range = fmt::format("p{:g}", s.max_range.percentile);
+  return {{"upsample_rows", s.upsample_rows},
+          {"upsample_columns", s.upsample_columns},
+          {"patch", s.patch},
+          {"overlap", s.overlap},
+          {"max_degree", s.max_degree},
+          {"accept_m", s.accept_m},
+          {"reject_m", s.reject_m},
+          {"k", s.k},
+          {"cliff_row_m", s.cliffs.row_m},
+          {"cliff_column_m", s.cliffs.column_m},
+          {"cliff_diagonal_m", s.cliffs.diagonal_m},
+          {"min_range_m", s.min_range_m},
+          {"max_range", max_range},
+          {"outlier_radius_m", s.outlier_radius_m},
+          {"outlier_min_points", s.outlier_min_points},
+          {"global_degree", s.global_degree}};
+}
+
+Outcome describe_curl(const Job& job, std::span<const std::byte> bytes) {
+  const DecodedScan scan = need(decode(bytes));
+  Json chunks = Json::array();
+  Table chunk_table;
+  for (const ChunkInfo& chunk : need(list_chunks(bytes))) {
+    chunks.push_back({{"name", chunk.name}, {"offset", chunk.offset}, {"bytes", chunk.bytes}});
+    chunk_table.add({chunk.name, bytes_text(chunk.bytes)});
+  }
+  const Lattice& lattice = scan.field->lattice();
+  const Json parameters = parameters_json(scan.settings);
+  std::string text = fmt::format("{}\n", job.input == "-" ? "standard input" : job.input);
+  const auto line = [&](const char* key, const std::string& value) {
+    text += fmt::format("  {:<12} {}\n", key, value);
+  };
+  line("profile", to_string(scan.profile));
+  line("sensor", fmt::format("{}, {} rings", scan.sensor.name, scan.sensor.rings.size()));
+  line("grid", fmt::format("{} x {}, {} rows", lattice.rows(), lattice.columns(),
+                           lattice.is_uniform() ? "uniform" : "ring"));
+  line("returns", fmt::format("{} coded", count_text(scan.coded_returns)));
+  line("fit", fmt::format("{} coefficients in {} patches", count_text(scan.coefficients),
+                          count_text(scan.patches)));
+  line("attributes", attribute_names(scan.attributes));
+  for (const auto& [key, value] : scan.metadata) line("metadata", key + " = " + value);
+  line("size", bytes_text(bytes.size()));
+  text += "chunks:\n" + chunk_table.text() + "parameters:\n";
+  Table table;
+  for (const auto& [key, value] : parameters.items()) {
+    table.add({key, value.is_string() ? value.get<std::string>() : value.dump()});
+  }
+  text += table.text();
+  return {{{"kind", "curl"},
+           {"profile", to_string(scan.profile)},
+           {"sensor", scan.sensor.name},
+           {"rings", scan.sensor.rings.size()},
+           {"rows", lattice.rows()},
+           {"columns", lattice.columns()},
+           {"points_coded", scan.coded_returns},
+           {"coefficients", scan.coefficients},
+           {"patches", scan.patches},
+           {"bytes", bytes.size()},
+           {"chunks", chunks},
+           {"parameters", parameters},
+           {"attributes", attribute_json(scan.attributes)},
+           {"metadata", scan.metadata}},
+          text};
+}
+
+int run(const Options& options) {
+  const auto sensor = parse_sensor(options.sensor);
+  parse_format(options.format);  // said wrongly, it is a matter of usage
+  return for_each_job(options.common, plan_jobs(options.inputs),
+                      [&](const Job& job, const ProgressCallback&) {
+                        const std::vector<std::byte> bytes = need(read_file(job.input));
+                        return options.format.empty() && is_curl(bytes)
+                                   ? describe_curl(job, bytes)
+                                   : describe_scan(job, bytes, options, sensor);
+                      });
+}
+
+}  // namespace
+
+Command add_info(CLI::App& root) {
+  CLI::App* app = root.add_subcommand("info", "What a scan or a .curl file holds");
+  app->footer(kFooter);
+  const auto options = std::make_shared<Options>();
+  app->add_option("inputs", options->inputs, "Scans or .curl files; - is standard input")
+      ->required();
+  app->add_option("--sensor", options->sensor, kSensorHelp)->capture_default_str();
+  app->add_option("--format", options->format,
+                  fmt::format("Format of the input: {}; default by content", kFormatNames));
+  add_common_options(*app, options->common);
+  return {app, [options] { return run(*options); }};
+}
+
+}  // namespace curlidar::app

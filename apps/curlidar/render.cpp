@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "curlidar/render.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "common_inputs.hpp"
+#include "curlidar/compare.hpp"
+
+namespace curlidar::app {
+namespace {
+
+constexpr const char* kFooter = R"(Examples:
+  curlidar render scan.pcd                                   scan.png, perspective by height
+  curlidar render scan.bin --view range-image --colour range -o image.png
+  curlidar render scan.curl --rows 8 --view birds-eye --extent 30
+  curlidar render scan.curl --colour error --reference scan.pcd --max-value 0.2
+  curlidar render scans/*.bin -o pictures/ --size 640x480)";
+
+struct Options {
+  CommonOptions common;
+  std::vector<std::string> inputs;
+  std::string output, format, view = "perspective", colour = "height", reference, size = "1280x0";
+  RenderSettings render;
+  ReconstructSettings reconstruct;
+};
+
+void parse_size(const std::string& text, RenderSettings& settings) {
+  const std::size_t cross = text.find('x');
+  const std::string height = cross == std::string::npos ? "0" : text.substr(cross + 1);
+  const bool good = CLI::detail::lexical_cast(text.substr(0, cross), settings.width) &&
+                    CLI::detail::lexical_cast(height, settings.height) && settings.width > 0 &&
+                    settings.width <= 16384 && settings.height <= 16384;
+  if (!good) {
+    usage_error(
+        fmt::format("--size '{}': give WIDTHxHEIGHT in pixels up to 16384, height 0 for "
+                    "what suits the view",
+                    text));
+  }
+}
+
+RenderSettings render_settings(const Options& options) {
+  RenderSettings settings = options.render;
+  settings.view = need_option(view_by_name(options.view));
+  settings.colour = need_option(colour_by_name(options.colour));
+  parse_size(options.size, settings);
+  if ((settings.colour == ColourBy::error) != !options.reference.empty()) {
+    usage_error("--colour error and --reference CLOUD go together");
+  }
+  return settings;
+}
+
+int run(const Options& options) {
+  const RenderSettings settings = render_settings(options);
+  const auto format = parse_format(options.format);
+  const std::vector<Job> jobs = plan_jobs(options.inputs, options.output, ".png");
+  Cloud reference;
+  if (!options.reference.empty()) {
+    for (const Job& job : jobs) refuse_same_file(options.reference, job.output);
+    reference = load_cloud(options.reference, std::nullopt);
+  }
+  ReconstructSettings reconstruct_settings = options.reconstruct;
+  reconstruct_settings.threads = options.common.threads;
+  return for_each_job(options.common, jobs, [&](const Job& job, const ProgressCallback& progress) {
+    const Cloud cloud = load_cloud(job.input, format, reconstruct_settings);
+    progress("draw", 0.5);
+    std::vector<double> values;
+    if (settings.colour == ColourBy::error) {
+      values = need(nearest_distances(cloud, reference, options.common.threads));
+    }
+    const Image image = need(render(cloud, settings, values));
+    need(write_png(job.output, image));
+    const std::size_t points = count_returns(cloud);
+    return Outcome{{{"points", points}, {"width", image.width}, {"height", image.height}},
+                   fmt::format("{} -> {}  {} points, {} x {} pixels\n", job.input, job.output,
+                               count_text(points), image.width, image.height)};
+  });
+}
+
+void add_picture_options(CLI::App& app, Options& options) {
+  app.add_option("--view", options.view, "range-image, birds-eye or perspective")
+      ->capture_default_str();
+  app.add_option("--colour,--color", options.colour, "range, height, intensity or error")
+      ->capture_default_str();
+  app.add_option("--reference", options.reference,
+                 "For --colour error: cloud or .curl file to which distances are measured");
+  app.add_option("--size", options.size, "Pixels; height 0 = what suits the view")
+      ->type_name("WxH")
+      ->capture_default_str();
+  app.add_option("--min-value", options.render.value_min,
+                 "Value at the lower end of the colours; default the 2nd percentile");
+  app.add_option("--max-value", options.render.value_max,
+                 "Value at the upper end; default the 98th percentile");
+  app.add_option("--extent", options.render.extent_m,
+                 "Half width of the bird's-eye view, metres; 0 = fits")
+      ->capture_default_str();
+  app.add_option("--yaw", options.render.yaw_deg, "Camera around the sensor, degrees")
+      ->capture_default_str();
+  app.add_option("--pitch", options.render.pitch_deg, "Camera above the horizon, degrees")
+      ->capture_default_str();
+  app.add_option("--distance", options.render.distance_m, "Camera distance, metres; 0 = fits")
+      ->capture_default_str();
+  app.add_option("--point-size", options.render.point_size_px, "Pixels; 0 = by density")
+      ->capture_default_str();
+  app.add_option("--title", options.render.title, "Text in the corner");
+}
+
+}  // namespace
+
+Command add_render(CLI::App& root) {
+  CLI::App* app = root.add_subcommand("render", "Draw clouds and .curl files as PNG pictures");
+  app->footer(kFooter);
+  const auto options = std::make_shared<Options>();
+  app->add_option("inputs", options->inputs, "Clouds or .curl files; - is standard input")
+      ->required();
+  app->add_option("-o,--output", options->output,
+                  "File, or directory for many inputs; default NAME.png beside the input, - is "
+                  "standard output");
+  add_picture_options(*app, *options);
+  const auto factor = CLI::Range(1e-3, 65536.0);
+  app->add_option("--rows", options->reconstruct.rows, "R_row with which .curl files are decoded")
+      ->capture_default_str()
+      ->check(factor);
+  app->add_option("--cols", options->reconstruct.columns, "R_col for the same")
+      ->capture_default_str()
+      ->check(factor);
+  app->add_option("--format", options->format,
+                  fmt::format("Format of the input: {}; default by content", kFormatNames));
+  add_common_options(*app, options->common);
+  return {app, [options] { return run(*options); }};
+}
+
+}  // namespace curlidar::app
