@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command line itself: help, versions, usage errors, exit codes."""
+
+import unittest
+
+from support import FILE, INPUT, USAGE, CommandTest
+
+COMMANDS = ["encode", "decode", "mesh", "upsample", "convert", "info", "project", "compare",
+            "simulate", "render", "sensors", "demo"]
+
+
+class UsageTest(CommandTest):
+    def test_help_lists_every_command_and_the_exit_codes(self):
+        text = self.run_ok("--help").decode()
+        for command in COMMANDS:
+            self.assertIn(f"\n  {command} ", text)
+        self.assertIn("Exit codes:", text)
+
+    def test_every_command_explains_itself(self):
+        for command in COMMANDS:
+            with self.subTest(command=command):
+                text = self.run_ok(command, "--help").decode()
+                self.assertIn("--json", text)
+                self.assertIn("--threads", text)
+                self.assertIn("--quiet", text)
+                if command != "demo":
+                    self.assertIn("Examples:", text)
+
+    def test_encode_help_shows_the_parameter_table_with_defaults(self):
+        text = self.run_ok("encode", "--help").decode()
+        for option, default in [("--upsample RxC", "2x2"), ("--patch", "4"), ("--overlap", "2"),
+                                ("--cliff-row", "2"), ("--cliff-col", "0.2"),
+                                ("--cliff-diag", "2.01"), ("--accept", "0.5"),
+                                ("--max-degree", "100"), ("--k", "9"), ("--outlier-radius", "1"),
+                                ("--outlier-min", "7"), ("--min-range", "5"),
+                                ("--max-range", "p90"), ("--cols", "1024")]:
+            line = next(line for line in text.splitlines() if line.strip().startswith(option))
+            self.assertIn(f"[{default}]", line, option)
+
+    def test_version(self):
+        self.assertRegex(self.run_ok("--version").decode(), r"^curlidar \d+\.\d+\.\d+\n$")
+
+    def test_without_arguments_the_help_is_shown(self):
+        result = self.execute()
+        self.assertEqual(result.returncode, USAGE)
+        self.assertEqual(result.stdout, b"")
+        self.assertIn(b"encode", result.stderr)
+
+    def test_wrong_usage(self):
+        for arguments in [["enkode"], ["encode"], ["encode", "a.pcd", "--no-such-option"],
+                          ["encode", "a.pcd", "--upsample", "2y2"],
+                          ["encode", "a.pcd", "--upsample", "0x1"],
+                          ["encode", "a.pcd", "--upsample", "1.5x1"],
+                          ["encode", "a.pcd", "--max-range", "p101"],
+                          ["encode", "a.pcd", "--max-range", "-3"],
+                          ["encode", "a.pcd", "--min-range", "nan"],
+                          ["encode", "a.pcd", "--rows", "many"],
+                          ["encode", "a.pcd", "--profile", "best"],
+                          ["encode", "a.pcd", "--preset", "underwater"],
+                          ["encode", "a.pcd", "--sensor", "hdl65"],
+                          ["encode", "a.pcd", "--attributes", "a,,b"],
+                          ["encode", "a.pcd", "--meta", "no-equals"],
+                          ["encode", "a.pcd", "--threads", "-1"],
+                          ["encode", "a.pcd", "--patch", "0"],
+                          ["encode", "a.pcd", "-o", "a.pcd"],
+                          ["encode", "-", "--json"],
+                          ["decode", "a.curl", "--rows", "0"],
+                          ["decode", "a.curl", "--rows", "inf"],
+                          ["decode", "a.curl", "--format", "docx"],
+                          ["decode", "a.curl", "--encoding", "morse"],
+                          ["convert", "a.pcd"],
+                          ["convert", "a.pcd", "a.curl"],
+                          ["convert", "a.pcd", "a.pcd"],
+                          ["compare", "a.pcd"],
+                          ["compare", "-", "-"],
+                          ["simulate", "--scene", "moon"],
+                          ["simulate", "--dropout", "2"],
+                          ["render", "a.pcd", "--view", "inside-out"],
+                          ["render", "a.pcd", "--colour", "error"],
+                          ["render", "a.pcd", "--size", "0x0"],
+                          ["sensors", "auto"],
+                          ["info", "a.pcd", "--sensor", "hdl65"]]:
+            with self.subTest(arguments=arguments):
+                result = self.run_fail(USAGE, *arguments)
+                self.assertEqual(result.stdout, b"")
+        self.assertEqual(self.files(), [])
+
+    def test_a_missing_file_is_named(self):
+        for arguments in [["encode", "nowhere.pcd"], ["decode", "nowhere.pcd"],
+                          ["info", "nowhere.pcd"], ["render", "nowhere.pcd"],
+                          ["compare", "nowhere.pcd", "nowhere.pcd"],
+                          ["project", "nowhere.pcd"], ["mesh", "nowhere.pcd"],
+                          ["upsample", "nowhere.pcd"], ["convert", "nowhere.pcd", "b.ply"]]:
+            with self.subTest(arguments=arguments):
+                self.run_fail(FILE, *arguments, says="nowhere.pcd")
+        self.assertEqual(self.files(), [])
+
+    def test_an_input_that_is_no_cloud_is_refused(self):
+        self.path("text.pcd").write_text("This is a letter, not a point cloud.\n")
+        self.path("empty.pcd").write_bytes(b"")
+        for name in ["text.pcd", "empty.pcd"]:
+            for command in ["encode", "info", "render", "project", "mesh", "upsample", "decode"]:
+                with self.subTest(name=name, command=command):
+                    self.run_fail(INPUT, command, name, says=name)
+        self.assertEqual(self.files(), ["empty.pcd", "text.pcd"])
+
+    def test_an_output_that_cannot_be_written(self):
+        self.simulate("scan.pcd")
+        for arguments in [["encode", "scan.pcd", "-o", "no/such/folder/scan.curl"],
+                          ["convert", "scan.pcd", "no/such/folder/scan.ply"],
+                          ["render", "scan.pcd", "-o", "no/such/folder/scan.png"],
+                          ["mesh", "scan.pcd", "-o", "no/such/folder/scan.ply"]]:
+            with self.subTest(arguments=arguments):
+                self.run_fail(FILE, *arguments, says="no/such/folder")
+        self.assertEqual(self.files(), ["scan.pcd"])
+        self.path("scan.pcd").unlink()
+
+
+if __name__ == "__main__":
+    unittest.main()
