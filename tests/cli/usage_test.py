@@ -10,6 +10,10 @@ COMMANDS = ["encode", "decode", "mesh", "upsample", "convert", "info", "project"
 
 
 class UsageTest(CommandTest):
+    def setUp(self):
+        for file in self.folder.iterdir():
+            file.unlink()
+
     def test_help_lists_every_command_and_the_exit_codes(self):
         text = self.run_ok("--help").decode()
         for command in COMMANDS:
@@ -113,7 +117,6 @@ class UsageTest(CommandTest):
             with self.subTest(arguments=arguments):
                 self.run_fail(FILE, *arguments, says="no/such/folder")
         self.assertEqual(self.files(), ["scan.pcd"])
-        self.path("scan.pcd").unlink()
 
 
 if __name__ == "__main__":
