@@ -176,9 +176,14 @@ Cloud load_cloud(const std::string& path, const std::optional<CloudFormat>& form
   return need(parse_cloud(bytes, path == "-" ? "standard input" : path, options));
 }
 
-void save_cloud(const std::string& path, const Cloud& cloud, WriteOptions options) {
+void save_cloud(const std::string& path, const Cloud& cloud, WriteOptions options,
+                const char* hint) {
   if (path == "-" && !options.format) options.format = CloudFormat::pcd;
-  need(write_cloud(path, cloud, options));
+  Status status = write_cloud(path, cloud, options);
+  if (!status && status.error().code == ErrorCode::unsupported) {
+    status = Error{ErrorCode::unsupported, status.error().message + hint};
+  }
+  need(status);
 }
 
 void keep_attributes(Cloud& cloud, const std::optional<std::vector<std::string>>& names) {

@@ -52,8 +52,11 @@ Cloud load_cloud(const std::string& path, const std::optional<CloudFormat>& form
 /// A .curl file.
 DecodedScan load_curl(const std::string& path);
 
-/// Writes a cloud; "-" without a format is PCD.
-void save_cloud(const std::string& path, const Cloud& cloud, WriteOptions options);
+/// Writes a cloud; "-" without a format is PCD. `hint` is what to do when the format cannot hold
+/// it.
+void save_cloud(const std::string& path, const Cloud& cloud, WriteOptions options,
+                const char* hint = "");
+inline constexpr const char* kAttributesHint = " (--attributes none, or the names to keep)";
 
 /// Keeps the named attributes only (nullopt: all). A name that the cloud lacks is a Failure.
 void keep_attributes(Cloud& cloud, const std::optional<std::vector<std::string>>& names);

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 
 namespace curlidar::app {
 namespace {
@@ -35,14 +36,51 @@ RowsByColumns<T> parse_pair(const std::string& text, const char* option, const c
   return pair;
 }
 
+class WrappingFormatter : public CLI::Formatter {
+ public:
+  std::string make_option_desc(const CLI::Option* option) const override {
+    const std::size_t width = 100 - get_column_width();
+    std::string wrapped;
+    std::size_t line = 0;
+    std::istringstream words(CLI::Formatter::make_option_desc(option));
+    for (std::string word; words >> word; line += word.size()) {
+      if (line == 0) {
+        wrapped += word;
+      } else if (line + 1 + word.size() <= width) {
+        wrapped += ' ' + word;
+        ++line;
+      } else {
+        wrapped += '\n' + word;
+        line = 0;
+      }
+    }
+    return wrapped;
+  }
+};
+
 }  // namespace
+
+std::shared_ptr<CLI::FormatterBase> help_formatter() {
+  const auto formatter = std::make_shared<WrappingFormatter>();
+  formatter->column_width(30);
+  return formatter;
+}
+
+CLI::Validator number_in(double min, double max) {
+  const auto check = [min, max](const std::string& text) -> std::string {
+    double value = 0;
+    if (CLI::detail::lexical_cast(text, value) && value >= min && value <= max) return {};
+    return fmt::format("'{}' is not a number from {:g} to {:g}", text, min, max);
+  };
+  return CLI::Validator(check, "");
+}
 
 void add_common_options(CLI::App& app, CommonOptions& common) {
   app.add_flag("--json", common.json, "Machine-readable report on standard output, nothing else")
       ->group("Common");
   app.add_option("--threads", common.threads, "Threads; 0 = all cores. Never changes the result")
       ->capture_default_str()
-      ->check(CLI::Range(0, 1024))
+      ->check(number_in(0, 1024))
       ->group("Common");
   app.add_flag("-q,--quiet", common.quiet, "No report and no progress, only errors")
       ->group("Common");

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -19,7 +20,9 @@
 
 namespace CLI {
 class App;
+class FormatterBase;
 class Option;
+class Validator;
 }  // namespace CLI
 
 namespace curlidar::app {
@@ -40,6 +43,11 @@ struct CommonOptions {
   std::size_t threads = 0;  ///< 0 = all cores
 };
 void add_common_options(CLI::App& app, CommonOptions& common);
+
+/// Help with descriptions wrapped to 100 columns.
+std::shared_ptr<CLI::FormatterBase> help_formatter();
+/// Accepts numbers of [min, max]; unlike CLI::Range it refuses NaN and leaves the help short.
+CLI::Validator number_in(double min, double max);
 
 /// A subcommand and what it does; run() returns the exit code.
 struct Command {

@@ -52,12 +52,12 @@ void PaperOptions::add_grid(CLI::App& app, const std::string& prefix) {
   add_number<std::uint32_t>(
       app, "--" + prefix + "cols", [](PaperSettings & s) -> auto& { return s.columns; },
       "Columns of the grid, N_h")
-      ->check(CLI::Range(4, 65536))
+      ->check(number_in(4, 65536))
       ->group(kGrid);
   add_number<double>(
       app, "--min-range", [](PaperSettings & s) -> auto& { return s.min_range_m; },
       "Drop returns nearer than this, metres")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_in(0.0, 1e6))
       ->group(kGrid);
   app.add_option_function<std::string>(
          "--max-range",
@@ -72,7 +72,7 @@ void PaperOptions::add_grid(CLI::App& app, const std::string& prefix) {
   add_number<double>(
       app, "--outlier-radius", [](PaperSettings & s) -> auto& { return s.outlier_radius_m; },
       "Outlier filter: neighbourhood, metres; 0 switches it off")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_in(0.0, 1e6))
       ->group(kGrid);
   add_number<std::uint32_t>(
       app, "--outlier-min", [](PaperSettings & s) -> auto& { return s.outlier_min_points; },
@@ -97,7 +97,7 @@ void PaperOptions::add_upsample(CLI::App& app) {
 }
 
 void PaperOptions::add_cliffs(CLI::App& app) {
-  const auto metres = CLI::Range(0.0, 1e6);
+  const auto metres = number_in(0.0, 1e6);
   add_number<double>(
       app, "--cliff-row", [](PaperSettings & s) -> auto& { return s.cliffs.row_m; },
       "The surface is broken between rows farther apart than this, metres")
@@ -117,7 +117,7 @@ void PaperOptions::add_cliffs(CLI::App& app) {
       app, "--refuse-triangles",
       [](PaperSettings & s) -> auto& { return s.refused_triangle_share; },
       "Share of the triangles, the largest ones, whose hits are refused")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(number_in(0.0, 1.0))
       ->group(kUpsampling);
 }
 
@@ -129,7 +129,7 @@ void PaperOptions::add_fit(CLI::App& app) {
   app.add_option("--attributes", attributes_,
                  "Attributes to keep: all, none, or names such as intensity,ring")
       ->capture_default_str();
-  const auto positive = CLI::Range(1, 65536);
+  const auto positive = number_in(1, 65536);
   add_number<std::uint32_t>(
       app, "--patch", [](PaperSettings & s) -> auto& { return s.patch; },
       "Size of a patch in grid cells, P_r")
@@ -138,27 +138,27 @@ void PaperOptions::add_fit(CLI::App& app) {
   add_number<std::uint32_t>(
       app, "--overlap", [](PaperSettings & s) -> auto& { return s.overlap; },
       "Extended cells on every side of a patch, in upsampled cells (paper-1to1: 0)")
-      ->check(CLI::Range(0, 65536))
+      ->check(number_in(0, 65536))
       ->group(kFit);
   add_number<double>(
       app, "--accept", [](PaperSettings & s) -> auto& { return s.accept_m; },
       "Mean training error at which a degree is accepted, metres (paper-1to1: 0.01)")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_in(0.0, 1e6))
       ->group(kFit);
   add_number<double>(
       app, "--reject", [](PaperSettings & s) -> auto& { return s.reject_m; },
       "Samples this far off are removed after the first pass, metres")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_in(0.0, 1e6))
       ->group(kFit);
   add_number<std::uint32_t>(
       app, "--max-degree", [](PaperSettings & s) -> auto& { return s.max_degree; },
       "Largest degree of a patch")
-      ->check(CLI::Range(0, 100))
+      ->check(number_in(0, 100))
       ->group(kFit);
   add_number<double>(
       app, "--k", [](PaperSettings & s) -> auto& { return s.k; },
       "Degree at which training and testing errors weigh the same")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_in(0.0, 1e6))
       ->group(kFit);
   add_number<bool>(
       app, "--error-stop", [](PaperSettings & s) -> auto& { return s.stop_on_total_error; },
@@ -167,12 +167,12 @@ void PaperOptions::add_fit(CLI::App& app) {
   add_number<std::uint32_t>(
       app, "--global-degree", [](PaperSettings & s) -> auto& { return s.global_degree; },
       "Degree of paper-global")
-      ->check(CLI::Range(0, 1000))
+      ->check(number_in(0, 1000))
       ->group(kFit);
   add_number<double>(
       app, "--global-reject", [](PaperSettings & s) -> auto& { return s.global_reject_m; },
       "paper-global masks reconstructed cells this far off, metres")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_in(0.0, 1e6))
       ->group(kFit);
 }
 

@@ -69,7 +69,7 @@ int run(const Options& options) {
     const std::size_t points_in = cloud.size();
     if (options.drop_invalid) cloud = without_invalid(cloud);
     keep_attributes(cloud, attributes);
-    save_cloud(job.output, cloud, write_options);
+    save_cloud(job.output, cloud, write_options, kAttributesHint);
     return Outcome{
         {{"points_in", points_in}, {"points", cloud.size()}},
         fmt::format("{} -> {}  {} points\n", job.input, job.output, count_text(cloud.size()))};

@@ -73,7 +73,7 @@ int run(const Options& options) {
     keep_attributes(cloud, attributes);
     const std::chrono::duration<double, std::milli> elapsed = Clock::now() - start;
     progress("write", 0.9);
-    save_cloud(job.output, cloud, write_options);
+    save_cloud(job.output, cloud, write_options, kAttributesHint);
     const std::size_t points = count_returns(cloud);
     return Outcome{{{"profile", to_string(scan.profile)},
                     {"sensor", scan.sensor.name},
@@ -99,7 +99,7 @@ Command add_decode(CLI::App& root) {
   app->add_option("-o,--output", options->output,
                   "File, or directory for many inputs; default NAME.decoded.pcd beside the input, "
                   "- is standard output");
-  const auto factor = CLI::Range(1e-3, 65536.0);
+  const auto factor = number_in(1e-3, 65536.0);
   app->add_option("--rows", options->rows,
                   "R_row: factor on the coded grid's rows, may be fractional")
       ->capture_default_str()

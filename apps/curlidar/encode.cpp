@@ -95,6 +95,11 @@ std::string report_text(const Job& job, const EncodeReport& report,
   if (counts.kept > report.points_coded) {
     text += drop_text(counts.kept - report.points_coded, report, "not explained by the fit");
   }
+  if (counts.out_of_range * 2 > report.points_in) {
+    text +=
+        "Most returns are out of range: --preset indoor, or --min-range and --max-range, keep "
+        "them.\n";
+  }
   Table stages;
   double total = 0;
   for (const StageTime& stage : report.stages_ms) {
@@ -145,10 +150,10 @@ Command add_encode(CLI::App& root) {
                   fmt::format("Format of the input: {}; default by content", kFormatNames));
   app->add_option("--meta", options->metadata, "key=value kept in the file; repeatable")
       ->allow_extra_args(false);
-  options->paper.add_fit(*app);
   options->paper.add_grid(*app);
   options->paper.add_upsample(*app);
   options->paper.add_cliffs(*app);
+  options->paper.add_fit(*app);
   add_common_options(*app, options->common);
   return {app, [options] { return run(*options); }};
 }

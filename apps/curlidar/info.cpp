@@ -156,7 +156,10 @@ Json parameters_json(const PaperSettings& s) {
           {"max_range", max_range},
           {"outlier_radius_m", s.outlier_radius_m},
           {"outlier_min_points", s.outlier_min_points},
-          {"global_degree", s.global_degree}};
+          {"refused_triangle_share", s.refused_triangle_share},
+          {"stop_on_total_error", s.stop_on_total_error},
+          {"global_degree", s.global_degree},
+          {"global_reject_m", s.global_reject_m}};
 }
 
 Outcome describe_curl(const Job& job, std::span<const std::byte> bytes) {
@@ -186,7 +189,11 @@ Outcome describe_curl(const Job& job, std::span<const std::byte> bytes) {
   text += "chunks:\n" + chunk_table.text() + "parameters:\n";
   Table table;
   for (const auto& [key, value] : parameters.items()) {
-    table.add({key, value.is_string() ? value.get<std::string>() : value.dump()});
+    if (value.is_number_float()) {
+      table.add({key, fmt::format("{:.6g}", value.get<double>())});
+    } else {
+      table.add({key, value.is_string() ? value.get<std::string>() : value.dump()});
+    }
   }
   text += table.text();
   return {{{"kind", "curl"},

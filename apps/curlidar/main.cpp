@@ -37,7 +37,7 @@ int parse_and_run(int argc, char** argv) {
   CLI::App root{"Continuous, compact representation of LiDAR scans", "curlidar"};
   root.set_version_flag("--version", std::string("curlidar ") + version());
   root.require_subcommand(1);
-  root.get_formatter()->column_width(32);
+  root.formatter(help_formatter());
   root.footer(kFooter);
   const std::vector<Command> commands = add_commands(root);
   if (argc < 2) {

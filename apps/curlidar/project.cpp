@@ -82,11 +82,11 @@ Command add_project(CLI::App& root) {
       ->capture_default_str();
   app->add_option("--cols", options->project.columns, "Columns in a turn")
       ->capture_default_str()
-      ->check(CLI::Range(4, 65536));
+      ->check(number_in(4, 65536));
   app->add_option("--min-range", options->project.min_range_m,
                   "Drop returns nearer than this, metres")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(number_in(0.0, 1e6));
   app->add_option("--max-range", options->max_range,
                   "Drop returns farther than this: metres, p90 for the 90th percentile of range, "
                   "or max for the sensor's own limit")

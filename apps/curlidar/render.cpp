@@ -121,7 +121,7 @@ Command add_render(CLI::App& root) {
                   "File, or directory for many inputs; default NAME.png beside the input, - is "
                   "standard output");
   add_picture_options(*app, *options);
-  const auto factor = CLI::Range(1e-3, 65536.0);
+  const auto factor = number_in(1e-3, 65536.0);
   app->add_option("--rows", options->reconstruct.rows, "R_row with which .curl files are decoded")
       ->capture_default_str()
       ->check(factor);

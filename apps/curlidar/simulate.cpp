@@ -83,7 +83,7 @@ int run(const Options& options) {
 
 void add_truth_options(CLI::App& app, Options& options) {
   const char* group = "Exact truth";
-  const auto factor = CLI::Range(1e-3, 65536.0);
+  const auto factor = number_in(1e-3, 65536.0);
   app.add_option("--truth-output", options.truth_output, "Write the exact cloud too, organised")
       ->group(group);
   app.add_option("--truth-rows", options.truth_rows, "R_row: factor on the grid's rows")
@@ -96,14 +96,14 @@ void add_truth_options(CLI::App& app, Options& options) {
       ->group(group);
   app.add_option("--truth-min-range", options.truth_min_range_m, "Leave out what is nearer, metres")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(number_in(0.0, 1e6))
       ->group(group);
   app.add_option("--grid-rows", options.grid_rows, "Rows of the grid: uniform, rings or a number")
       ->capture_default_str()
       ->group(group);
   app.add_option("--grid-cols", options.grid_columns, "Columns of the grid")
       ->capture_default_str()
-      ->check(CLI::Range(4, 65536))
+      ->check(number_in(4, 65536))
       ->group(group);
 }
 
@@ -124,14 +124,14 @@ Command add_simulate(CLI::App& root) {
       ->capture_default_str();
   app->add_option("--noise", options->simulate.range_noise_m, "Standard deviation of range, metres")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(number_in(0.0, 100.0));
   app->add_option("--dropout", options->simulate.dropout, "Share of returns lost at random")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(number_in(0.0, 1.0));
   app->add_option("--range-unit", options->simulate.range_unit_m,
                   "Round ranges to multiples of this, metres; 0 = exact")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(number_in(0.0, 100.0));
   app->add_option("-o,--output", options->output, "Cloud to write; - is standard output")
       ->capture_default_str();
   app->add_option("--to-format", options->to_format,

@@ -91,10 +91,10 @@ Command add_upsample(CLI::App& root) {
                   "input, - is standard output");
   app->add_option("--rows", options->rows, "S_row: factor on the grid's rows")
       ->capture_default_str()
-      ->check(CLI::Range(1, 64));
+      ->check(number_in(1, 64));
   app->add_option("--cols", options->columns, "S_col: factor on the grid's columns")
       ->capture_default_str()
-      ->check(CLI::Range(1, 64));
+      ->check(number_in(1, 64));
   app->add_option("--dump-masks", options->mask_directory,
                   "Directory for the point grid and the cliffs as PNG");
   app->add_option("--format", options->format,

@@ -10,7 +10,7 @@ SCANS = [
     ("kitti_odometry_00/velodyne/000000.bin", 64, []),
     ("kitti_raw/curl_example/0.pcd", 64, []),
     ("velodyne/ndt_omp_hdl32/251370668.pcd", 32, []),
-    ("nebula/hesai/xt16/1732848128093928016.pcd", 16, []),
+    ("nebula/hesai/xt16/1732848128093928016.pcd", 16, ["--preset", "indoor"]),
     ("ouster_sdk/OS-0-128-U1_v2.3.0_1024x10_frame1491.pcd", 128, ["--preset", "indoor"]),
     ("ouster_sdk/OS-1-32-G_v2.1.1_1024x10_frame638.pcd", 32, ["--preset", "indoor"]),
     ("ouster_sdk/OS-2-32-U0_v2.0.0_1024x10_frame5424.pcd", 32, ["--preset", "indoor"]),
