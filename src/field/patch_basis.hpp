@@ -91,8 +91,9 @@ class PatchBasis {
   std::vector<std::size_t> ends_;              ///< functions up to each degree
 };
 
-/// Value at a direction of a sum of local polynomials: for every degree l and i = 0..l with
-/// m = l - i: down^i Re zeta^m and, for m > 0, down^i Im zeta^m; zeta = east + i north.
+/// Value at a direction of a sum of local polynomials, (degree + 1)^2 of them and at least one: for
+/// every degree l and i = 0..l with m = l - i: down^i Re zeta^m and, for m > 0, down^i Im zeta^m;
+/// zeta = east + i north.
 double evaluate_local(std::span<const double> local_coefficients, const LocalDirection& direction);
 
 }  // namespace curlidar

@@ -32,8 +32,7 @@ double training_weight(std::size_t degree, double k);
 /// The degree rises from 1 until the mean training error is at most accept_m, or the total error
 /// (Eq. 6) rises, which takes one step back; then all samples are fitted. There are never more
 /// coefficients than samples (half as many where cells are held out), nor than the cells can tell
-/// apart. A patch without samples of its own
-/// stays empty. Extends `basis` as needed.
+/// apart. A patch without samples of its own stays empty. Extends `basis` as needed.
 PatchFit fit_patch(PatchBasis& basis, std::span<const double> ranges,
                    std::span<const CellRole> roles, const FitSettings& settings);
 

@@ -112,7 +112,8 @@ std::vector<double> solve_normal_equations(const DenseRows& rows, std::size_t de
         for (std::size_t l = a.order; l <= degree; ++l) {
           const double scaled = weight * rows.legendre[i][legendre_index(l, a.order)];
           const auto row = static_cast<Eigen::Index>(harmonic_index(l, a));
-          for (std::size_t k = b.order; k <= degree; ++k) {
+          const std::size_t last = s == t ? l : degree;  // each pair of one wave once
+          for (std::size_t k = b.order; k <= last; ++k) {
             const auto column = static_cast<Eigen::Index>(harmonic_index(k, b));
             normal(std::max(row, column), std::min(row, column)) +=
                 scaled * rows.legendre[i][legendre_index(k, b.order)];
@@ -127,16 +128,6 @@ std::vector<double> solve_normal_equations(const DenseRows& rows, std::size_t de
       }
     }
   });
-  // Pairs of functions of one wave were met twice, once from either side.
-  for (std::size_t s = 0; s < waves; ++s) {
-    const Wave a = Wave::number(s, degree);
-    for (std::size_t l = a.order; l <= degree; ++l) {
-      for (std::size_t k = a.order; k < l; ++k) {
-        normal(static_cast<Eigen::Index>(harmonic_index(l, a)),
-               static_cast<Eigen::Index>(harmonic_index(k, a))) *= 0.5;
-      }
-    }
-  }
   const double ridge = kRidge * normal.diagonal().mean();
   normal.diagonal().array() += ridge > 0 ? ridge : 1;
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(normal);
@@ -193,6 +184,7 @@ void GlobalField::evaluate_row(double row, std::span<const double> columns, bool
   const double high = model_.settings.max_range.metres + model_.settings.global_reject_m;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     ranges[i] = std::numeric_limits<double>::quiet_NaN();
+    if (!is_index(row) || !is_index(columns[i])) continue;
     if (masked && !believed(model_.masks, CellPosition::of(row, columns[i]))) continue;
     const double azimuth = model_.lattice.azimuth(columns[i]);
     double value = cosine[0], re = 1, im = 0;

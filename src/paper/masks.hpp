@@ -27,13 +27,21 @@ struct CellMasks {
   }
 };
 
+/// Fractional rows and columns beyond this are nowhere.
+inline constexpr double kMaxIndex = 1e9;
+/// Whether a fractional index is a number that CellPosition can split.
+inline bool is_index(double index) {
+  return index >= -kMaxIndex && index <= kMaxIndex;
+}
+
 /// Where a direction lies among the cells of a lattice: between rows `row` and row + 1 at
 /// row_fraction in [0, 1), likewise for columns. A fraction of exactly 0 is on the cell.
 struct CellPosition {
   std::int64_t row = 0, column = 0;
   double row_fraction = 0, column_fraction = 0;
 
-  /// Splits fractional indices; positions within 1e-9 of a cell are on it.
+  /// Splits fractional indices of magnitude up to kMaxIndex; positions within 1e-9 of a cell are
+  /// on it.
   static CellPosition of(double row, double column);
 };
 

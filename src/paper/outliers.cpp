@@ -18,7 +18,7 @@ struct Cube {
   friend bool operator==(const Cube&, const Cube&) = default;
 };
 
-/// Beyond any LiDAR all points share the outermost cubes, which then prove nothing.
+/// Cubes that stand for everything beyond kFarthestCube; no sensor sees that far.
 bool is_outermost(const Cube& c) {
   const auto limit = static_cast<std::int32_t>(kFarthestCube);
   return std::abs(c.x) >= limit || std::abs(c.y) >= limit || std::abs(c.z) >= limit;
@@ -128,7 +128,8 @@ std::vector<bool> find_inliers(const Cloud& cloud, double radius_m, std::uint32_
   const int reach = static_cast<int>(std::ceil(radius_m / edge));
   const CubeGrid grid(cloud.positions, edge);
   grid.for_each_cube([&](const Cube& cube, std::span<const std::uint32_t> points) {
-    const bool settled = points.size() >= min_points && !is_outermost(cube);
+    if (is_outermost(cube)) return;
+    const bool settled = points.size() >= min_points;
     for (const std::uint32_t i : points) {
       keep[i] = settled || has_neighbours(grid, cloud.positions, cube, cloud.positions[i],
                                           radius_m * radius_m, reach, min_points);

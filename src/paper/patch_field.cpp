@@ -38,11 +38,12 @@ PatchField::PatchField(const PaperModel& model)
 
 void PatchField::evaluate_row(double row, std::span<const double> columns, bool masked,
                               std::span<double> ranges) const {
-  const std::size_t patch_row = grid_.patch_row_at(row);
+  const std::size_t patch_row = grid_.patch_row_at(is_index(row) ? row : 0);
   const LocalFrame frame = grid_.frame(patch_row);
   const SinCos elevation = SinCos::of(lattice_.elevation(row));
   for (std::size_t i = 0; i < columns.size(); ++i) {
     ranges[i] = std::numeric_limits<double>::quiet_NaN();
+    if (!is_index(row) || !is_index(columns[i])) continue;
     if (masked && !believed(masks_, CellPosition::of(row, columns[i]))) continue;
     const std::size_t patch_column = grid_.patch_column_at(columns[i]);
     const std::size_t patch = patch_row * grid_.columns() + patch_column;

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "curlidar/lattice.hpp"
@@ -28,7 +27,7 @@ struct CellRect {
   std::size_t cells() const { return height() * width(); }
 };
 
-/// The grid of patches over a lattice. Every original row and column belongs to one patch; the
+/// The grid of patches over a lattice. Every dense cell belongs to one patch; the
 /// last patches of a row or column are smaller when the sizes do not divide.
 class PatchGrid {
  public:

@@ -26,9 +26,10 @@ struct PolarMesh {
 };
 
 /// Vertices at radius n = row + 1 (top beam innermost) and the azimuth of their column.
-/// Points on concentric rings come in cocircular groups, which Delaunay leaves open: among their
-/// diagonals the one that is shorter in space is taken (then the one with the smaller vertex
-/// number), so that edges rather stay on a surface than cross from one to another.
+/// Points on concentric rings come in cocircular groups, which Delaunay leaves open: edges between
+/// two triangles of such a group are flipped until each is the shorter diagonal in space (then the
+/// one with the smaller vertex number), so that edges rather stay on a surface than cross from one
+/// to another.
 /// The hull of the plane is triangulated again as the bottom cap, wound the other way, so that
 /// surface and cap together are closed. Fewer than three points give no triangles.
 PolarMesh make_polar_mesh(const RangeImage& image);

@@ -31,6 +31,8 @@ SampleImage original_samples(const RangeImage& image);
 
 /// Cells on original cells copy their return. The others are rays into the mesh; hits on the
 /// largest `refused_share` of the triangles and cells that the masks do not believe stay empty.
+/// (Where the top row lies below the horizon the mesh does not enclose the sensor: rays along that
+/// row, which pass above the chords between its returns, meet nothing.)
 SampleImage upsample(const RangeImage& image, const PolarMesh& mesh, const CellMasks& masks,
                      std::uint32_t row_factor, std::uint32_t column_factor, double refused_share,
                      std::size_t threads);
