@@ -31,7 +31,9 @@ CLI::Option* PaperOptions::add_number(CLI::App& app, const std::string& name,
 
 void PaperOptions::add_grid(CLI::App& app, const std::string& prefix) {
   app.add_option("--preset", preset_,
-                 "Parameters for a kind of scan: " + joined(paper_preset_names()))
+                 "Parameters for a kind of scan: " + joined(paper_preset_names()) +
+                     " or auto (indoor if most returns are nearer than 5 m, else outdoor). "
+                     "Defaults below are those of outdoor")
       ->capture_default_str()
       ->group(kGrid);
   app.add_option("--sensor", sensor_, kSensorHelp)->capture_default_str()->group(kGrid);
@@ -176,10 +178,14 @@ void PaperOptions::add_fit(CLI::App& app) {
       ->group(kFit);
 }
 
-EncodeSettings PaperOptions::settings(std::size_t threads) const {
+std::string PaperOptions::preset(const Cloud& cloud) const {
+  return preset_ == "auto" ? suggest_preset(cloud) : preset_;
+}
+
+EncodeSettings PaperOptions::settings(const Cloud& cloud, std::size_t threads) const {
   EncodeSettings settings;
   settings.profile = need_option(profile_by_name(profile_));
-  settings.paper = for_profile(need_option(paper_preset(preset_)), settings.profile);
+  settings.paper = for_profile(need_option(paper_preset(preset(cloud))), settings.profile);
   for (const Override& apply : overrides_) apply(settings.paper);
   settings.sensor = parse_sensor(sensor_);
   settings.attributes = parse_attribute_list(attributes_);

@@ -26,8 +26,12 @@ class PaperOptions {
   /// --profile, --attributes and everything about patches and degrees.
   void add_fit(CLI::App& app);
 
-  /// Failure(kExitUsage) if a value makes no sense.
-  EncodeSettings settings(std::size_t threads) const;
+  /// The settings for a scan. Failure(kExitUsage) if a value makes no sense.
+  EncodeSettings settings(const Cloud& cloud, std::size_t threads) const;
+  /// The same failures before any scan is read.
+  void check() const { settings({}, 1); }
+  /// Name of the preset that settings() takes for a scan.
+  std::string preset(const Cloud& cloud) const;
 
  private:
   using Override = std::function<void(PaperSettings&)>;
@@ -36,7 +40,7 @@ class PaperOptions {
   CLI::Option* add_number(CLI::App& app, const std::string& name, T& (*field)(PaperSettings&),
                           const char* help);
 
-  std::string profile_ = "paper", preset_ = "outdoor", sensor_ = "auto", attributes_ = "all";
+  std::string profile_ = "paper", preset_ = "auto", sensor_ = "auto", attributes_ = "all";
   std::vector<Override> overrides_;
 };
 

@@ -40,7 +40,8 @@ std::map<std::string, std::string> parse_metadata(const std::vector<std::string>
   return metadata;
 }
 
-Json report_json(const EncodeReport& report, const EncodeSettings& settings) {
+Json report_json(const EncodeReport& report, const EncodeSettings& settings,
+                 const std::string& preset) {
   Json stages = Json::object();
   for (const StageTime& stage : report.stages_ms) stages[stage.stage] = stage.ms;
   Json degrees = Json::object();
@@ -49,6 +50,7 @@ Json report_json(const EncodeReport& report, const EncodeSettings& settings) {
   }
   const ProjectionCounts& counts = report.projection;
   return {{"profile", to_string(settings.profile)},
+          {"preset", preset},
           {"sensor", report.sensor},
           {"points_in", report.points_in},
           {"points_coded", report.points_coded},
@@ -73,10 +75,10 @@ std::string drop_text(std::size_t count, const EncodeReport& report, const char*
   return fmt::format("{:>10}  {:4.1f} %  {}\n", count_text(count), share, reason);
 }
 
-std::string report_text(const Job& job, const EncodeReport& report,
-                        const EncodeSettings& settings) {
+std::string report_text(const Job& job, const EncodeReport& report, const EncodeSettings& settings,
+                        const std::string& preset) {
   Table table;
-  table.add({"profile", to_string(settings.profile)});
+  table.add({"profile", fmt::format("{}, {}", to_string(settings.profile), preset)});
   table.add({"sensor", report.sensor});
   table.add({"points in", count_text(report.points_in)});
   table.add({"points coded", count_text(report.points_coded)});
@@ -116,7 +118,7 @@ std::string report_line(const Job& job, const EncodeReport& report) {
 }
 
 int run(const Options& options) {
-  const EncodeSettings settings = options.paper.settings(options.common.threads);
+  options.paper.check();
   const auto metadata = parse_metadata(options.metadata);
   const auto format = parse_format(options.format);
   const std::vector<Job> jobs = plan_jobs(options.inputs, options.output, ".curl");
@@ -128,10 +130,12 @@ int run(const Options& options) {
       cloud.metadata["source"] = std::filesystem::path(job.input).filename().string();
     }
     for (const auto& [key, value] : metadata) cloud.metadata[key] = value;
+    const EncodeSettings settings = options.paper.settings(cloud, options.common.threads);
+    const std::string preset = options.paper.preset(cloud);
     const Encoded encoded = need(encode(cloud, settings, progress));
     need(write_file(job.output, encoded.bytes));
-    return Outcome{report_json(encoded.report, settings),
-                   jobs.size() == 1 ? report_text(job, encoded.report, settings)
+    return Outcome{report_json(encoded.report, settings, preset),
+                   jobs.size() == 1 ? report_text(job, encoded.report, settings, preset)
                                     : report_line(job, encoded.report)};
   });
 }

@@ -28,11 +28,13 @@ struct Options {
 };
 
 int run(const Options& options) {
-  const EncodeSettings settings = options.paper.settings(options.common.threads);
+  options.paper.check();
   const auto format = parse_format(options.format);
   const std::vector<Job> jobs = plan_jobs(options.inputs, options.output, ".mesh.ply");
   return for_each_job(options.common, jobs, [&](const Job& job, const ProgressCallback&) {
-    const Mesh mesh = need(polar_mesh(load_cloud(job.input, format), settings));
+    const Cloud cloud = load_cloud(job.input, format);
+    const Mesh mesh =
+        need(polar_mesh(cloud, options.paper.settings(cloud, options.common.threads)));
     need(write_mesh(job.output, mesh.vertices, mesh.triangles,
                     options.ascii ? Encoding::ascii : Encoding::binary));
     return Outcome{

@@ -51,15 +51,16 @@ void write_masks(const std::string& directory, const std::string& name, const Up
 }
 
 int run(const Options& options) {
-  EncodeSettings settings = options.paper.settings(options.common.threads);
-  settings.paper.upsample_rows = options.rows;
-  settings.paper.upsample_columns = options.columns;
+  options.paper.check();
   const auto format = parse_format(options.format);
   WriteOptions write_options;
   write_options.format = parse_format(options.to_format);
   const std::vector<Job> jobs = plan_jobs(options.inputs, options.output, ".upsampled.pcd");
   return for_each_job(options.common, jobs, [&](const Job& job, const ProgressCallback&) {
     const Cloud cloud = load_cloud(job.input, format);
+    EncodeSettings settings = options.paper.settings(cloud, options.common.threads);
+    settings.paper.upsample_rows = options.rows;
+    settings.paper.upsample_columns = options.columns;
     const Upsampled scan = need(upsample_scan(cloud, settings));
     if (!options.mask_directory.empty()) {
       write_masks(options.mask_directory, stem_of(job.input), scan);

@@ -59,8 +59,8 @@ struct PaperSettings {
 Result<PaperSettings> paper_preset(std::string_view name);
 std::vector<std::string> paper_preset_names();
 /// The preset for a scan that nobody has chosen one for: "indoor" if more than half of its returns
-/// lie nearer than the 5 m at which "outdoor" begins, else "outdoor".
-std::string suggest_preset(const Detection& detection);
+/// lie nearer than the 5 m at which "outdoor" begins, else "outdoor". O(n).
+std::string suggest_preset(const Cloud& cloud);
 
 /// A preset's settings as the given profile starts from them (paper-1to1: S 1x1, accept 0.01 m,
 /// reject 0.05 m, no overlap, no E_t stop). Apply it before changes of your own: `encode` takes

@@ -67,8 +67,14 @@ std::vector<std::string> paper_preset_names() {
   return names;
 }
 
-std::string suggest_preset(const Detection& detection) {
-  return detection.range_p50_m < PaperSettings{}.min_range_m ? "indoor" : "outdoor";
+std::string suggest_preset(const Cloud& cloud) {
+  std::size_t returns = 0, near = 0;
+  for (const Vec3& p : cloud.positions) {
+    if (!is_return(p)) continue;
+    ++returns;
+    near += norm(p) < PaperSettings{}.min_range_m ? 1 : 0;
+  }
+  return 2 * near > returns ? "indoor" : "outdoor";
 }
 
 Result<PaperSettings> paper_preset(std::string_view name) {

@@ -255,9 +255,9 @@ TEST(Codec, RejectsWhatItCannotCode) {
 }
 
 TEST(Codec, PresetSuitsTheScan) {
-  EXPECT_EQ(suggest_preset(detect_sensor(small_scan("room")).value()), "indoor");
+  EXPECT_EQ(suggest_preset(small_scan("room")), "indoor");
   const SensorProfile hdl = builtin_sensor("hdl64e-kitti").value();
-  EXPECT_EQ(suggest_preset(detect_sensor(small_scan("street", hdl)).value()), "outdoor");
+  EXPECT_EQ(suggest_preset(small_scan("street", hdl)), "outdoor");
   for (const std::string& name : paper_preset_names()) {
     EXPECT_TRUE(paper_preset(name)) << name;
   }
