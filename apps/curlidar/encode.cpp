@@ -121,6 +121,12 @@ int run(const Options& options) {
   options.paper.check();
   const auto metadata = parse_metadata(options.metadata);
   const auto format = parse_format(options.format);
+  for (const std::string& input : options.inputs) {
+    if (input.ends_with(".curl")) {
+      usage_error(
+          fmt::format("{} is encoded already; 'curlidar decode' makes a cloud of it", input));
+    }
+  }
   const std::vector<Job> jobs = plan_jobs(options.inputs, options.output, ".curl");
   return for_each_job(options.common, jobs, [&](const Job& job, const ProgressCallback& progress) {
     ReadOptions read_options;

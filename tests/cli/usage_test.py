@@ -70,6 +70,7 @@ class UsageTest(CommandTest):
                           ["encode", "a.pcd", "--patch", "0"],
                           ["encode", "a.pcd", "-o", "a.pcd"],
                           ["encode", "-", "--json"],
+                          ["encode", "a.curl"],
                           ["decode", "a.curl", "--rows", "0"],
                           ["decode", "a.curl", "--rows", "inf"],
                           ["decode", "a.curl", "--format", "docx"],
