@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The rules of the house that a compiler does not check.
 
-Includes go one way down, public headers stand on std alone, files stay small, and every file
-names its licence. docs/design.md explains the layers; this file is their exact definition.
+Includes go one way down, public headers stand on std alone, files stay small, every file names
+its licence, and pages name files that exist. docs/design.md explains the layers; this file is their exact definition.
 """
 import re
 import unittest
@@ -118,6 +118,19 @@ class LayersTest(unittest.TestCase):
                 if not any("SPDX-License-Identifier: BSD-3-Clause" in line for line in
                            file.read_text(encoding="utf-8").splitlines()[:2])]
         self.assertEqual(bare, [])
+
+    def test_pages_name_files_that_exist(self):
+        pages = [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("bench/*.md")]
+        gone = []
+        for page in pages:
+            text = page.read_text(encoding="utf-8")
+            links = [page.parent / link for link in re.findall(r"\]\(([^):#]+)\)", text)]
+            paths = [ROOT / path for path in
+                     re.findall(r"`((?:src|include|tests|bench|apps|cmake)/[\w./-]+)`", text)]
+            gone += [f"{page.relative_to(ROOT)}: {path}" for path in links + paths
+                     if not path.exists()]
+        self.assertGreater(len(pages), 3)
+        self.assertEqual(gone, [])
 
 
 if __name__ == "__main__":
