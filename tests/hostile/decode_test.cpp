@@ -69,11 +69,7 @@ TEST_P(HostileDecode, DamageBehindRightChecksums) {
 INSTANTIATE_TEST_SUITE_P(All, HostileDecode,
                          testing::Values(Profile::paper, Profile::paper_1to1,
                                          Profile::paper_global),
-                         [](const auto& param_info) {
-                           std::string name = to_string(param_info.param);
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+                         test::profile_test_name);
 
 TEST(HostileDecode, ErrorsNameTheChunkAndTheByte) {
   auto file = file_of(Profile::paper);

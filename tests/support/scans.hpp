@@ -2,7 +2,11 @@
 // Small simulated scans for tests of the whole pipeline.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <numbers>
+#include <string>
 #include <string_view>
 
 #include "curlidar/codec.hpp"
@@ -45,6 +49,13 @@ inline Cloud small_scan(std::string_view scene = "street",
                         const SensorProfile& sensor = small_sensor()) {
   const auto world = make_scene(scene);
   return simulate(**world, sensor).value();
+}
+
+/// Names test cases by their profile.
+inline std::string profile_test_name(const testing::TestParamInfo<Profile>& info) {
+  std::string name = to_string(info.param);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
 }
 
 }  // namespace curlidar::test

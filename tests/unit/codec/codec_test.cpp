@@ -112,11 +112,7 @@ TEST_P(CodecProfiles, AttributesBelongToTheirReturns) {
 INSTANTIATE_TEST_SUITE_P(All, CodecProfiles,
                          testing::Values(Profile::paper, Profile::paper_1to1,
                                          Profile::paper_global),
-                         [](const auto& param_info) {
-                           std::string name = to_string(param_info.param);
-                           std::replace(name.begin(), name.end(), '-', '_');
-                           return name;
-                         });
+                         test::profile_test_name);
 
 TEST(Codec, CountsAccountForEveryReturn) {
   Cloud scan = small_scan();
