@@ -230,7 +230,8 @@ Command add_demo(CLI::App& root) {
   app->footer(kFooter);
   const auto options = std::make_shared<Options>();
   app->add_option("-o,--output", options->output, "Directory for the results")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->take_last();  // ./dev demo gives one before the user's
   app->add_option("--scene", options->scene,
                   fmt::format("Scene: {}", fmt::join(scene_names(), ", ")))
       ->capture_default_str();
