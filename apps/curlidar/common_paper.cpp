@@ -155,7 +155,7 @@ void PaperOptions::add_fit(CLI::App& app) {
   add_number<std::uint32_t>(
       app, "--max-degree", [](PaperSettings & s) -> auto& { return s.max_degree; },
       "Largest degree of a patch")
-      ->check(number_in(0, 100))
+      ->check(number_in(1, 100))
       ->group(kFit);
   add_number<double>(
       app, "--k", [](PaperSettings & s) -> auto& { return s.k; },

@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
 #include <vector>
 
 #include "commands.hpp"
@@ -33,6 +35,13 @@ std::vector<Command> add_commands(CLI::App& root) {
   return commands;
 }
 
+/// A first word that is no command deserves to be named: CLI11 only says that a command is missing.
+void refuse_unknown_command(const std::vector<Command>& commands, const std::string& word) {
+  const auto has_name = [&](const Command& command) { return command.app->get_name() == word; };
+  if (word.starts_with('-') || std::any_of(commands.begin(), commands.end(), has_name)) return;
+  usage_error(fmt::format("'{}' is no command (see 'curlidar --help')", word));
+}
+
 int parse_and_run(int argc, char** argv) {
   CLI::App root{"Continuous, compact representation of LiDAR scans", "curlidar"};
   root.set_version_flag("--version", std::string("curlidar ") + version());
@@ -44,6 +53,7 @@ int parse_and_run(int argc, char** argv) {
     std::fputs(root.help().c_str(), stderr);
     return kExitUsage;
   }
+  refuse_unknown_command(commands, argv[1]);
   const Command* chosen = nullptr;
   try {
     root.parse(argc, argv);

@@ -106,6 +106,9 @@ void add_picture_options(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--point-size", options.render.point_size_px, "Pixels; 0 = by density")
       ->capture_default_str();
+  app.add_option(
+      "--clip-above", options.render.clip_above_m,
+      "Leave out points higher than this above the sensor, metres: the ceiling of a room");
   app.add_option("--title", options.render.title, "Text in the corner");
 }
 

@@ -45,7 +45,7 @@ struct PaperSettings {
 
   std::uint32_t patch = 4;          ///< P_r, in original cells, both ways
   std::uint32_t overlap = 2;        ///< extended cells on every side, in upsampled cells
-  std::uint32_t max_degree = 100;   ///< of a patch
+  std::uint32_t max_degree = 100;   ///< of a patch; more than 24 add nothing (256 functions)
   double accept_m = 0.5;            ///< a degree is accepted at this mean training error
   double reject_m = 0.5;            ///< samples this far off are removed after the first pass
   double k = 9;                     ///< degree at which training and testing errors weigh the same

@@ -52,6 +52,9 @@ class UsageTest(CommandTest):
         self.assertEqual(result.stdout, b"")
         self.assertIn(b"encode", result.stderr)
 
+    def test_an_unknown_command_is_named(self):
+        self.assertIn(b"'enkode' is no command", self.execute("enkode").stderr)
+
     def test_wrong_usage(self):
         for arguments in [["enkode"], ["encode"], ["encode", "a.pcd", "--no-such-option"],
                           ["encode", "a.pcd", "--upsample", "2y2"],
