@@ -243,7 +243,7 @@ class DegenerateScanTest(CommandTest):
                        one_ring]:
             for profile in ["paper", "paper-1to1", "paper-global"]:
                 with self.subTest(points=len(points), profile=profile):
-                    result = self.encode(points, "--profile", profile)
+                    result = self.encode(points, "--profile", profile, "--global-degree", "8")
                     if result.returncode != 0:
                         self.assertEqual(result.returncode, INPUT, result.stderr)
                         self.assertIn(b"few.bin", result.stderr)
