@@ -14,7 +14,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const ByteSpan bytes = std::as_bytes(std::span(data, size));
   (void)test::read_all_chunks(bytes);
   if (size < kHeaderSize) return 0;
-  (void)test::read_all_chunks(test::with_right_checksums(bytes));
+  const auto repaired = test::with_right_checksums(bytes);
+  (void)test::read_all_chunks(repaired);
+  (void)read_container_prefix(repaired);
   (void)test::read_chunk({static_cast<ChunkType>(data[0]), bytes.subspan(1), 1});
   return 0;
 }

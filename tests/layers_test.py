@@ -120,7 +120,7 @@ class LayersTest(unittest.TestCase):
         self.assertEqual(bare, [])
 
     def test_pages_name_files_that_exist(self):
-        pages = [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("bench/*.md")]
+        pages = [*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("bench/*.md")]
         gone = []
         for page in pages:
             text = page.read_text(encoding="utf-8")

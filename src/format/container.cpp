@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "base/crc32c.hpp"
@@ -16,6 +17,7 @@ namespace {
 // A byte above 127 and a carriage return: transfers that strip bit 7 or change line ends show.
 constexpr std::array<std::uint8_t, 7> kMagic{0x89, 'C', 'U', 'R', 'L', 0x0d, 0x0a};
 constexpr std::size_t kMagicBeforeLineEnd = 5;
+constexpr std::size_t kMaxVarintSize = 10;
 
 ByteSpan magic() {
   return std::as_bytes(std::span(kMagic));
@@ -43,6 +45,18 @@ const char* name_of(ChunkType type) {
       return "global";
     case ChunkType::attributes:
       return "attributes";
+    case ChunkType::compact_parameters:
+      return "compact_parameters";
+    case ChunkType::compact_sensor:
+      return "compact_sensor";
+    case ChunkType::compact_index:
+      return "compact_index";
+    case ChunkType::compact_mask:
+      return "compact_mask";
+    case ChunkType::compact_field:
+      return "compact_field";
+    case ChunkType::compact_residual:
+      return "compact_residual";
     case ChunkType::metadata:
       return "metadata";
   }
@@ -72,41 +86,65 @@ Status check_header(ByteSpan bytes) {
   return {};
 }
 
-/// The chunk that starts at the reader's place.
-Result<Chunk> read_chunk(ByteReader& reader, ByteSpan bytes) {
-  const std::size_t start = reader.offset();
-  if (reader.remaining() == 0) {
-    return Error{ErrorCode::corrupt,
-                 fmt::format("byte {}: the .curl file is cut off: no end chunk", start)};
-  }
-  Chunk chunk;
-  chunk.type = static_cast<ChunkType>(reader.read<std::uint8_t>());
-  const std::uint64_t size = reader.read_varint();
-  chunk.offset = reader.offset();
-  const std::size_t available = reader.remaining();
-  chunk.payload = reader.take(size);
-  const ByteSpan checked = bytes.subspan(start, reader.offset() - start);
-  const auto checksum = reader.read<std::uint32_t>();
+/// A chunk as far as it is there.
+struct FoundChunk {
+  std::size_t start = 0;  ///< of the chunk in the file
+  bool sized = false;     ///< type and size are there
+  bool whole = false;     ///< the checksum is there too, and right
+  TornChunk part;
+};
+
+/// The chunk that starts at the reader's place; corrupt if it is damaged.
+Result<FoundChunk> read_chunk(ByteReader& reader, ByteSpan bytes) {
+  FoundChunk found;
+  found.start = reader.offset();
+  TornChunk& part = found.part;
+  part.type = static_cast<ChunkType>(reader.read<std::uint8_t>());
+  const std::size_t before_size = reader.remaining();
+  part.size = reader.read_varint();
   if (!reader.ok()) {
+    if (before_size < kMaxVarintSize) return found;
     return Error{ErrorCode::corrupt,
-                 fmt::format("byte {}: the {} chunk claims {} bytes and a checksum, but only {} "
-                             "bytes are left; the file is cut off or damaged",
-                             start, to_string(chunk.type), size, available)};
+                 fmt::format("byte {}: the {} chunk has no valid size; the file is damaged",
+                             found.start, to_string(part.type))};
   }
-  if (checksum != crc32c(checked)) {
+  found.sized = true;
+  part.offset = reader.offset();
+  part.payload = reader.take(std::min<std::uint64_t>(part.size, reader.remaining()));
+  const ByteSpan checked = bytes.subspan(found.start, reader.offset() - found.start);
+  const auto checksum = reader.read<std::uint32_t>();
+  found.whole = reader.ok() && part.payload.size() == part.size;
+  if (found.whole && checksum != crc32c(checked)) {
     return Error{ErrorCode::corrupt,
-                 fmt::format("byte {}: the {} chunk is damaged (checksum mismatch)", start,
-                             to_string(chunk.type))};
+                 fmt::format("byte {}: the {} chunk is damaged (checksum mismatch)", found.start,
+                             to_string(part.type))};
   }
-  return chunk;
+  return found;
 }
 
-Status check_end(const Chunk& chunk, const ByteReader& reader) {
-  if (!chunk.payload.empty()) {
-    return Error{ErrorCode::corrupt,
-                 fmt::format("byte {}: the end chunk is not empty", chunk.offset)};
+/// Whether a chunk of this type may stand here; `seen` are the types before it.
+Status check_type(ChunkType type, std::size_t offset, std::array<bool, 256>& seen) {
+  const bool known = name_of(type) != nullptr;
+  if (!known && !is_ancillary(type)) {
+    return Error{ErrorCode::unsupported,
+                 fmt::format("byte {}: unknown critical chunk {}; the file needs a newer version "
+                             "of curlidar, or the program that wrote it",
+                             offset, to_string(type))};
   }
-  if (reader.remaining() != 0) {
+  const bool again = std::exchange(seen[static_cast<std::uint8_t>(type)], true);
+  if (known && again && !may_repeat(type)) {
+    return Error{ErrorCode::corrupt,
+                 fmt::format("byte {}: a second {} chunk", offset, to_string(type))};
+  }
+  return {};
+}
+
+Status check_end(const FoundChunk& end, const ByteReader& reader) {
+  if (end.part.size != 0) {
+    return Error{ErrorCode::corrupt,
+                 fmt::format("byte {}: the end chunk is not empty", end.part.offset)};
+  }
+  if (end.whole && reader.remaining() != 0) {
     return Error{ErrorCode::corrupt, fmt::format("byte {}: {} bytes follow the end chunk",
                                                  reader.offset(), reader.remaining())};
   }
@@ -142,41 +180,62 @@ bool is_container(ByteSpan bytes) {
   return starts_with(bytes, magic());
 }
 
-Result<std::vector<Chunk>> read_container(ByteSpan bytes) {
+Result<PartialContainer> read_container_prefix(ByteSpan bytes) {
   CURLIDAR_TRY(check_header(bytes));
   ByteReader reader(bytes);
   reader.take(kHeaderSize);
   std::array<bool, 256> seen{};
-  std::vector<Chunk> chunks;
+  PartialContainer file;
   while (true) {
-    CURLIDAR_TRY_ASSIGN(chunk, read_chunk(reader, bytes));
-    if (chunk.type == ChunkType::end) {
-      CURLIDAR_TRY(check_end(chunk, reader));
-      return chunks;
+    file.cut_chunk = reader.offset();
+    if (reader.remaining() == 0) return file;
+    CURLIDAR_TRY_ASSIGN(found, read_chunk(reader, bytes));
+    if (!found.sized) return file;
+    const TornChunk& part = found.part;
+    if (part.type == ChunkType::end) {
+      CURLIDAR_TRY(check_end(found, reader));
+      file.complete = found.whole;
+      if (!found.whole) file.torn = part;
+      return file;
     }
-    const bool known = name_of(chunk.type) != nullptr;
-    if (!known && !is_ancillary(chunk.type)) {
-      return Error{ErrorCode::unsupported,
-                   fmt::format("byte {}: unknown critical chunk {}; the file needs a newer version "
-                               "of curlidar, or the program that wrote it",
-                               chunk.offset, to_string(chunk.type))};
+    CURLIDAR_TRY(check_type(part.type, part.offset, seen));
+    if (!found.whole) {
+      file.torn = part;
+      return file;
     }
-    if (known && std::exchange(seen[static_cast<std::uint8_t>(chunk.type)], true)) {
-      return Error{ErrorCode::corrupt,
-                   fmt::format("byte {}: a second {} chunk", chunk.offset, to_string(chunk.type))};
-    }
-    if (chunks.size() == kMaxChunks) {
+    if (file.chunks.size() == kMaxChunks) {
       return Error{ErrorCode::limit_exceeded,
-                   fmt::format("byte {}: more than {} chunks", chunk.offset, kMaxChunks)};
+                   fmt::format("byte {}: more than {} chunks", part.offset, kMaxChunks)};
     }
-    chunks.push_back(chunk);
+    file.chunks.push_back({part.type, part.payload, part.offset});
   }
+}
+
+Result<std::vector<Chunk>> read_container(ByteSpan bytes) {
+  CURLIDAR_TRY_ASSIGN(file, read_container_prefix(bytes));
+  if (file.complete) return std::move(file.chunks);
+  if (!file.torn) {
+    return Error{ErrorCode::corrupt,
+                 fmt::format("byte {}: the .curl file is cut off: no end chunk", file.cut_chunk)};
+  }
+  return Error{ErrorCode::corrupt,
+               fmt::format("byte {}: the {} chunk claims {} bytes and a checksum, but only {} "
+                           "bytes are left; the file is cut off or damaged",
+                           file.cut_chunk, to_string(file.torn->type), file.torn->size,
+                           bytes.size() - file.torn->offset)};
 }
 
 const Chunk* find_chunk(const std::vector<Chunk>& chunks, ChunkType type) {
   const auto found = std::find_if(chunks.begin(), chunks.end(),
                                   [&](const Chunk& chunk) { return chunk.type == type; });
   return found == chunks.end() ? nullptr : &*found;
+}
+
+std::vector<Chunk> find_chunks(const std::vector<Chunk>& chunks, ChunkType type) {
+  std::vector<Chunk> found;
+  std::copy_if(chunks.begin(), chunks.end(), std::back_inserter(found),
+               [&](const Chunk& chunk) { return chunk.type == type; });
+  return found;
 }
 
 Result<Chunk> require_chunk(const std::vector<Chunk>& chunks, ChunkType type) {

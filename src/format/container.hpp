@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The .curl container: magic, version, checksummed chunks. Written down in docs/format.md.
+// The .curl container: magic, version, checksummed chunks. Written down in
+// docs/format/curl-format-1.md.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,9 +14,9 @@
 
 namespace curlidar {
 
-/// The format version written and read by this library. 0 is the draft before version 1: files of
-/// another version are refused.
-inline constexpr std::uint8_t kFormatVersion = 0;
+/// The format version written and read by this library. Files of another version are refused, and
+/// so are those of version 0, the draft before it.
+inline constexpr std::uint8_t kFormatVersion = 1;
 inline constexpr std::size_t kHeaderSize = 8;
 /// More chunks than this are refused.
 inline constexpr std::size_t kMaxChunks = 65536;
@@ -30,11 +32,22 @@ enum class ChunkType : std::uint8_t {
   patches = 0x05,
   global = 0x06,
   attributes = 0x07,
+  compact_parameters = 0x10,
+  compact_sensor = 0x11,
+  compact_index = 0x12,
+  compact_mask = 0x13,      ///< one for each segment, in the order of the segments
+  compact_field = 0x14,     ///< likewise
+  compact_residual = 0x15,  ///< likewise
   metadata = 0x80,
 };
 
 inline bool is_ancillary(ChunkType type) {
   return (static_cast<std::uint8_t>(type) & 0x80) != 0;
+}
+/// Whether a file may hold more than one chunk of a known type.
+inline bool may_repeat(ChunkType type) {
+  return type == ChunkType::compact_mask || type == ChunkType::compact_field ||
+         type == ChunkType::compact_residual;
 }
 /// "sensor", "metadata", ...; "0x71" for a type without a name.
 std::string to_string(ChunkType type);
@@ -43,7 +56,8 @@ std::string to_string(ChunkType type);
 class ContainerWriter {
  public:
   ContainerWriter();
-  /// Appends a chunk. Known types may be added once each; `end` is added by finish().
+  /// Appends a chunk. Known types that may not repeat are added once at most; finish()
+  /// adds `end`.
   void add(ChunkType type, ByteSpan payload);
   /// Closes the file and gives its bytes.
   std::vector<std::byte> finish() &&;
@@ -64,12 +78,35 @@ bool is_container(ByteSpan bytes);
 
 /// The chunks of a file in file order, without the end chunk; ancillary ones of unknown type
 /// included. The payloads point into `bytes`. Errors: corrupt (not such a file, cut off, damaged,
-/// a known chunk twice), unsupported (another version, an unknown critical chunk),
-/// limit_exceeded (more than kMaxChunks). O(size), allocates O(chunks).
+/// a known chunk twice that may not repeat), unsupported (another version, an unknown critical
+/// chunk), limit_exceeded (more than kMaxChunks). O(size), allocates O(chunks).
 Result<std::vector<Chunk>> read_container(ByteSpan bytes);
 
-/// The chunk of a type that may be absent; null if it is.
+/// The chunk that a file was cut off in. Nothing vouches for what is there: its checksum is cut
+/// off.
+struct TornChunk {
+  ChunkType type = ChunkType::end;
+  std::uint64_t size = 0;  ///< of the whole payload, as the chunk states it
+  ByteSpan payload;        ///< what is left of it: at most `size` bytes
+  std::size_t offset = 0;  ///< of the payload in the file
+};
+
+/// A file as far as it is there.
+struct PartialContainer {
+  bool complete = false;          ///< the end chunk was found: nothing is missing
+  std::vector<Chunk> chunks;      ///< those that are whole, as read_container gives them
+  std::optional<TornChunk> torn;  ///< none if complete or cut before the size of a chunk is known
+  std::size_t cut_chunk = 0;      ///< where in the file the first chunk begins that is not whole
+};
+
+/// Reads a file that may be cut off anywhere after its header. A damaged length may look like a
+/// cut; all other damage to whole chunks is an error. Errors and cost as read_container.
+Result<PartialContainer> read_container_prefix(ByteSpan bytes);
+
+/// The first chunk of a type that may be absent; null if it is.
 const Chunk* find_chunk(const std::vector<Chunk>& chunks, ChunkType type);
+/// All chunks of a type that may repeat, in file order.
+std::vector<Chunk> find_chunks(const std::vector<Chunk>& chunks, ChunkType type);
 /// The chunk of a type that must be there; corrupt if it is not.
 Result<Chunk> require_chunk(const std::vector<Chunk>& chunks, ChunkType type);
 

@@ -34,6 +34,35 @@ TEST(FormatDamage, EveryCutIsFound) {
   }
 }
 
+TEST(FormatDamage, EveryCutGivesTheChunksBeforeIt) {
+  const auto file = test::whole_file();
+  const auto whole = read_container(file);
+  ASSERT_TRUE(whole);
+  for (std::size_t size = kHeaderSize; size < file.size(); ++size) {
+    const auto prefix = read_container_prefix(ByteSpan(file).first(size));
+    ASSERT_TRUE(prefix) << "cut to " << size << " bytes: " << prefix.error().message;
+    EXPECT_FALSE(prefix->complete);
+    for (std::size_t i = 0; i < prefix->chunks.size(); ++i) {
+      EXPECT_EQ(prefix->chunks[i].offset, (*whole)[i].offset);
+    }
+    const std::size_t left = size - prefix->cut_chunk;
+    EXPECT_LE(prefix->torn ? prefix->torn->payload.size() : 0, left);
+    ASSERT_LE(prefix->cut_chunk, size);
+  }
+}
+
+TEST(FormatDamage, AFlippedBitNeverLooksComplete) {
+  const auto file = test::whole_file();
+  for (std::size_t i = 0; i < file.size(); ++i) {
+    for (int bit = 0; bit < 8; ++bit) {
+      auto damaged = file;
+      damaged[i] ^= std::byte{1} << bit;
+      const auto prefix = read_container_prefix(damaged);
+      ASSERT_FALSE(prefix && prefix->complete) << "bit " << bit << " of byte " << i;
+    }
+  }
+}
+
 TEST(FormatDamage, EveryFlippedBitIsFound) {
   const auto file = test::whole_file();
   for (std::size_t i = 0; i < file.size(); ++i) {
@@ -100,10 +129,13 @@ TEST(FormatDamage, RandomFiles) {
     std::vector<std::byte> file(good.begin(), good.begin() + kHeaderSize);
     const std::size_t size = engine() % 200;
     for (std::size_t i = 0; i < size; ++i) file.push_back(static_cast<std::byte>(engine() % 9));
-    const Status status = read_all_chunks(with_right_checksums(file));
+    const auto repaired = with_right_checksums(file);
+    const Status status = read_all_chunks(repaired);
     if (!status) {
       ASSERT_THAT(status.error().message, HasSubstr("byte"));
     }
+    const auto prefix = read_container_prefix(repaired);
+    ASSERT_EQ(prefix && prefix->complete, read_container(repaired).has_value());
   }
 }
 
