@@ -13,11 +13,13 @@ std::vector<std::byte> RangeEncoder::finish() && {
     low_ = static_cast<std::uint32_t>(value);
     break;
   }
+  const std::size_t written = bytes_.size();
   for (int i = 0; i < 4; ++i) {
     bytes_.push_back(static_cast<std::byte>(low_ >> 24));
     low_ <<= 8;
   }
-  while (!bytes_.empty() && bytes_.back() == std::byte{0}) bytes_.pop_back();
+  // Zeros written earlier stay: RangeDecoder::exhausted() counts on at most four left out.
+  while (bytes_.size() > written && bytes_.back() == std::byte{0}) bytes_.pop_back();
   return std::move(bytes_);
 }
 

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "compact/residual_coder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <random>
+#include <vector>
+
+namespace curlidar {
+namespace {
+
+/// A made-up segment: walls seen with noise, holes in the mask, a field that is off by a little.
+struct Scene {
+  std::size_t rows, columns;
+  std::vector<std::uint8_t> occupied, coded;
+  std::vector<std::int32_t> field, surface, ranges;
+
+  Scene(std::size_t row_count, std::size_t column_count, std::uint64_t seed)
+      : rows(row_count), columns(column_count) {
+    std::mt19937_64 random(seed);
+    const auto below = [&](std::int32_t n) {
+      return static_cast<std::int32_t>(random() % static_cast<std::uint64_t>(n));
+    };
+    for (std::size_t row = 0; row < rows; ++row) {
+      for (std::size_t column = 0; column < columns; ++column) {
+        const auto wall = static_cast<std::int32_t>(column / 16);
+        const std::int32_t distance = 65536 * (8 + wall % 5) + 900 * static_cast<std::int32_t>(row);
+        const std::int32_t tilt = 40 * static_cast<std::int32_t>(column % 16);
+        const std::int32_t noise = below(700) + below(700) - 700;
+        occupied.push_back(below(10) != 0);
+        coded.push_back(wall % 3 != 1);
+        surface.push_back(wall);
+        field.push_back(distance);
+        ranges.push_back(std::max(1, distance + tilt + noise + (below(50) == 0 ? 200000 : 0)));
+      }
+    }
+  }
+  ResidualSegment segment() const { return {rows, columns, occupied, coded, field, surface}; }
+  std::size_t cells() const { return rows * columns; }
+};
+
+std::vector<std::byte> random_bytes(std::size_t count, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::vector<std::byte> bytes(count);
+  for (std::byte& byte : bytes) byte = static_cast<std::byte>(random() & 255);
+  return bytes;
+}
+
+class ResidualSteps : public testing::TestWithParam<std::int32_t> {};
+
+TEST_P(ResidualSteps, DecodesToWhatTheEncoderSaysWithinHalfAStep) {
+  const std::int32_t step = GetParam();
+  const Scene scene(24, 96, 1);
+  std::vector<std::int32_t> told(scene.cells()), decoded(scene.cells());
+  const auto bytes = encode_residual(scene.segment(), scene.ranges, step, 0, told);
+  EXPECT_EQ(decode_residual(bytes, scene.segment(), step, decoded), scene.rows);
+  EXPECT_EQ(decoded, told);
+  for (std::size_t i = 0; i < scene.cells(); ++i) {
+    if (!scene.occupied[i]) {
+      EXPECT_EQ(decoded[i], 0);
+    } else if (!scene.coded[i]) {
+      EXPECT_EQ(decoded[i], scene.field[i]);
+    } else {
+      EXPECT_LE(2 * std::abs(decoded[i] - scene.ranges[i]), step) << "cell " << i;
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Steps, ResidualSteps,
+                         testing::Values(1, 2, 131, 524, 1311, 6554, 65536, 1 << 24));
+
+TEST(ResidualCoder, ABitsWorthTradesErrorForBytes) {
+  const Scene scene(32, 128, 2);
+  const std::int32_t step = 1311;
+  std::vector<std::int32_t> exact(scene.cells()), cheap(scene.cells());
+  const auto full = encode_residual(scene.segment(), scene.ranges, step, 0, exact);
+  const auto less = encode_residual(scene.segment(), scene.ranges, step, 44 * step, cheap);
+  EXPECT_LT(less.size() * 10, full.size() * 9);
+  std::int64_t exact_error = 0, cheap_error = 0;
+  for (std::size_t i = 0; i < scene.cells(); ++i) {
+    if (!scene.occupied[i] || !scene.coded[i]) continue;
+    exact_error += std::abs(exact[i] - scene.ranges[i]);
+    cheap_error += std::abs(cheap[i] - scene.ranges[i]);
+  }
+  EXPECT_GT(cheap_error, exact_error);
+  EXPECT_LT(cheap_error, 2 * exact_error);
+}
+
+TEST(ResidualCoder, NoiseCostsItsEntropy) {
+  // Triangular noise on +-700 has 10.2 bits, 3.1 of them above a step of 131; the rest is for
+  // outliers and for predicting from noisy neighbours.
+  const Scene scene(64, 512, 3);
+  std::vector<std::int32_t> decoded(scene.cells());
+  const auto bytes = encode_residual(scene.segment(), scene.ranges, 131, 0, decoded);
+  std::size_t coded = 0;
+  for (std::size_t i = 0; i < scene.cells(); ++i) coded += scene.occupied[i] && scene.coded[i];
+  const double bits = 8.0 * static_cast<double>(bytes.size()) / static_cast<double>(coded);
+  EXPECT_LT(bits, 4.0);
+  EXPECT_GT(bits, 3.1);
+}
+
+TEST(ResidualCoder, NothingCodedTakesNoBytes) {
+  Scene scene(8, 16, 4);
+  std::fill(scene.coded.begin(), scene.coded.end(), std::uint8_t{0});
+  std::vector<std::int32_t> decoded(scene.cells());
+  EXPECT_TRUE(encode_residual(scene.segment(), scene.ranges, 100, 0, decoded).empty());
+  EXPECT_EQ(decode_residual({}, scene.segment(), 100, decoded), scene.rows);
+
+  EXPECT_TRUE(encode_residual({}, {}, 100, 0, {}).empty());
+  EXPECT_EQ(decode_residual({}, {}, 100, {}), 0u);
+}
+
+TEST(ResidualCoder, ExtremeRangesAndFieldsSurvive) {
+  Scene scene(12, 40, 5);
+  std::mt19937_64 random(6);
+  for (std::size_t i = 0; i < scene.cells(); ++i) {
+    scene.ranges[i] = random() % 2 ? kMaxRangeQ16 : 1;
+    scene.field[i] = static_cast<std::int32_t>(random());
+  }
+  for (const std::int32_t step : {1, 3, 1 << 24}) {
+    std::vector<std::int32_t> told(scene.cells()), decoded(scene.cells());
+    const auto bytes = encode_residual(scene.segment(), scene.ranges, step, 0, told);
+    EXPECT_EQ(decode_residual(bytes, scene.segment(), step, decoded), scene.rows);
+    EXPECT_EQ(decoded, told);
+    for (std::size_t i = 0; i < scene.cells(); ++i) {
+      if (!scene.occupied[i] || !scene.coded[i]) continue;
+      EXPECT_LE(2 * std::int64_t{std::abs(decoded[i] - scene.ranges[i])}, step);
+    }
+  }
+}
+
+TEST(ResidualCoder, ACutStreamGivesItsCompleteRows) {
+  const Scene scene(24, 96, 7);
+  std::vector<std::int32_t> told(scene.cells()), decoded(scene.cells());
+  const auto bytes = encode_residual(scene.segment(), scene.ranges, 66, 0, told);
+  std::size_t before = 0;
+  for (std::size_t size = 0; size <= bytes.size(); size += bytes.size() / 16) {
+    const std::size_t rows =
+        decode_residual(ByteSpan(bytes).first(size), scene.segment(), 66, decoded);
+    EXPECT_GE(rows, before);
+    before = rows;
+    for (std::size_t i = 0; i < rows * scene.columns; ++i) ASSERT_EQ(decoded[i], told[i]);
+    for (std::size_t i = 0; i < scene.cells(); ++i) {
+      ASSERT_EQ(decoded[i] > 0, scene.occupied[i] != 0);
+    }
+  }
+  EXPECT_GT(before, scene.rows / 2);
+}
+
+TEST(ResidualCoder, AnyBytesDecodeToRangesInsideTheLimits) {
+  const Scene scene(16, 64, 8);
+  std::vector<std::int32_t> decoded(scene.cells());
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const auto bytes = random_bytes(static_cast<std::size_t>(seed * 40), seed);
+    for (const std::int32_t step : {1, 500, 1 << 24}) {
+      EXPECT_LE(decode_residual(bytes, scene.segment(), step, decoded), scene.rows);
+      for (std::size_t i = 0; i < scene.cells(); ++i) {
+        ASSERT_EQ(decoded[i] > 0, scene.occupied[i] != 0);
+        ASSERT_LE(decoded[i], kMaxRangeQ16);
+      }
+    }
+  }
+  const std::vector<std::byte> ones(4000, std::byte{0xff});
+  EXPECT_LE(decode_residual(ones, scene.segment(), 1, decoded), scene.rows);
+}
+
+}  // namespace
+}  // namespace curlidar
