@@ -33,7 +33,8 @@ void add_axis(Plane& plane, std::int64_t scale, const Axis& axis) {
 std::int64_t scale_of(std::int64_t mean_square_q56) {
   if (mean_square_q56 <= 0) return 0;
   const auto root = static_cast<std::int64_t>(isqrt(static_cast<std::uint64_t>(mean_square_q56)));
-  return root == 0 ? 0 : (std::int64_t{1} << 42) / root;
+  if (root == 0) return 0;
+  return std::min((std::int64_t{1} << 42) / root, std::int64_t{1} << 32);
 }
 
 }  // namespace
@@ -46,7 +47,7 @@ PatchShape make_shape(const Geometry& geometry, const Block& block) {
   for (std::int64_t i = 0; i < h; ++i) sum += elevations[i];
   const std::int64_t middle = div_floor(sum, h);
   shape.elevation = sin_cos_q30(static_cast<std::uint32_t>(middle));
-  shape.norm = inverse_root(n, 0);
+  shape.norm = inverse_root(n << 20, 20);
 
   // Along the row: u = cos(e) sin(a) at evenly spaced azimuths; its mean square in Q56.
   std::int64_t mean_uu = 0;

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is known of a segment's field while it is coded: the part that contexts and parents look at.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "compact/geometry.hpp"
+#include "compact/surface.hpp"
+
+namespace curlidar::compact {
+
+/// Settings of the field that decoder and encoder share.
+struct FieldSettings {
+  std::int32_t step = 0;            ///< D, Q16 metres
+  std::uint32_t root_log2 = 4;      ///< roots of 2^root_log2 cells a side
+  std::uint32_t smallest_leaf = 8;  ///< cells of the smallest block that a split may make
+};
+
+inline constexpr std::uint32_t kMaxLayers = 4;
+inline constexpr std::int32_t kNoSurface = -1;
+
+/// A surface with the patch that it was coded in.
+struct PlacedSurface {
+  Surface surface;
+  PatchFrame frame;
+  Block block;
+  std::uint32_t functions = 0;  ///< place in kFunctions
+};
+
+/// Surfaces that a layer may inherit its plane from, without repetition.
+struct Parents {
+  static constexpr std::uint32_t kMost = 6;
+  std::array<std::int32_t, kMost> surface{};
+  std::uint32_t count = 0;
+  std::int64_t range = 0;  ///< what the neighbours make expect, for a layer without a parent
+};
+
+class FieldState {
+ public:
+  FieldState(const Geometry& geometry, const std::vector<std::uint8_t>& occupied,
+             const FieldSettings& settings);
+
+  const Geometry& geometry;
+  const std::vector<std::uint8_t>& occupied;
+  const FieldSettings settings;
+  std::vector<std::int32_t> range;    ///< of each cell as the field gives it
+  std::vector<std::int32_t> surface;  ///< of each cell, kNoSurface where not coded or empty
+  std::vector<std::uint8_t> depth_class;  ///< of the leaf of each cell: layers - 1
+  std::vector<PlacedSurface> surfaces;
+
+  std::size_t cell(std::uint32_t row, std::uint32_t column) const {
+    return static_cast<std::size_t>(row) * geometry.columns() + column;
+  }
+  /// The surface at a cell that may lie outside the segment.
+  std::int32_t surface_at(std::int64_t row, std::int64_t column) const {
+    if (row < 0 || column < 0 || row >= geometry.rows() || column >= geometry.columns()) {
+      return kNoSurface;
+    }
+    return surface[static_cast<std::size_t>(row) * geometry.columns() +
+                   static_cast<std::size_t>(column)];
+  }
+
+  const PatchShape& shape(const Block& block);
+  Parents parents(const Block& block) const;
+  /// Cells of the block that hold a return, in raster order.
+  void cells_of(const Block& block, std::vector<std::uint32_t>& cells) const;
+
+ private:
+  std::map<std::array<std::uint32_t, 3>, PatchShape> shapes_;
+};
+
+}  // namespace curlidar::compact

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "compact/field_syntax.hpp"
+
+namespace curlidar::compact {
+namespace {
+
+std::uint32_t size_class(std::uint32_t cells) {
+  return cells <= 4 ? 0 : cells <= 8 ? 1 : cells <= 16 ? 2 : cells <= 64 ? 3 : cells <= 256 ? 4 : 5;
+}
+
+std::uint32_t shape_class(const Block& block) {
+  const std::uint32_t side = std::min(block.height, block.width);
+  const std::uint32_t aspect = block.width > block.height ? 1 : block.width < block.height ? 2 : 0;
+  return (side >= 32 ? 0 : side >= 16 ? 1 : side >= 8 ? 2 : 3) * 3 + aspect;
+}
+
+/// Class of |a - b| in steps: below 1/4, 1, 4, 16, more.
+std::uint32_t distance_class(std::int64_t a, std::int64_t b, std::int32_t step) {
+  const std::int64_t distance = 4 * (a > b ? a - b : b - a);
+  std::uint32_t out = 0;
+  for (std::int64_t bound = step; out < 4 && distance >= bound; bound *= 4) ++out;
+  return out;
+}
+
+}  // namespace
+
+BlockContext block_context(FieldState& state, const Block& block, std::uint32_t returns) {
+  BlockContext c;
+  c.block = block;
+  c.parents = state.parents(block);
+  c.size = size_class(block.cells());
+  c.shape = shape_class(block);
+  c.filled = returns * 4 >= block.cells() * 3 ? 2 : returns * 4 >= block.cells() ? 1 : 0;
+  c.few = returns <= 2 ? 0 : returns <= 6 ? 1 : returns <= 16 ? 2 : 3;
+
+  const auto neighbour = [&](std::int64_t row, std::int64_t column, std::uint32_t& size,
+                             std::uint32_t& depth) {
+    const std::int32_t surface = state.surface_at(row, column);
+    if (surface == kNoSurface) return;
+    const std::uint32_t cells = state.surfaces[static_cast<std::size_t>(surface)].block.cells();
+    size = cells < block.cells() ? 1 : cells == block.cells() ? 2 : 3;
+    const auto at = state.cell(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(column));
+    depth = std::min<std::uint32_t>(state.depth_class[at], 2) + 1;
+  };
+  neighbour(block.row + block.height / 2, std::int64_t{block.column} - 1, c.left_size, c.left_depth);
+  neighbour(std::int64_t{block.row} - 1, block.column + block.width / 2, c.above_size,
+            c.above_depth);
+
+  const Direction& middle = state.geometry.directions()[state.cell(
+      block.row + block.height / 2, block.column + block.width / 2)];
+  std::int64_t low = 0, high = 0;
+  for (std::uint32_t k = 0; k < c.parents.count; ++k) {
+    const PlacedSurface& parent = state.surfaces[static_cast<std::size_t>(c.parents.surface[k])];
+    c.parent_functions[k] = parent.functions;
+    const std::int64_t range = range_of(parent.surface.plane.at(middle));
+    low = k == 0 ? range : std::min(low, range);
+    high = k == 0 ? range : std::max(high, range);
+  }
+  c.spread = c.parents.count < 2 ? 0 : distance_class(low, high, state.settings.step);
+  return c;
+}
+
+Surface surface_of(const FieldState& state, const BlockContext& c, const PatchFrame& frame,
+                   const LayerCode& layer) {
+  if (layer.parent == 0) {
+    const std::int64_t step = std::max<std::int64_t>(
+        mul_shift(state.settings.step, frame.shape.norm, 30), 1);
+    const std::int64_t range =
+        std::clamp(c.parents.range + layer.range_steps * step, kMinRange, kMaxRange);
+    const Plane plane = facing_plane(frame, range);
+    return add_functions(plane, frame,
+                         coefficient_step((std::int64_t{1} << 46) / range, state.settings.step),
+                         layer.q, kFunctions[layer.functions]);
+  }
+  const Plane& plane =
+      state.surfaces[static_cast<std::size_t>(c.parents.surface[layer.parent - 1])].surface.plane;
+  const Direction& middle = state.geometry.directions()[state.cell(
+      c.block.row + c.block.height / 2, c.block.column + c.block.width / 2)];
+  const std::int64_t range = range_of(plane.at(middle));
+  return add_functions(plane, frame,
+                       coefficient_step((std::int64_t{1} << 46) / range, state.settings.step),
+                       layer.q, kFunctions[layer.functions]);
+}
+
+LabelContexts::LabelContexts(const FieldState& state, const Block& block, std::uint32_t layers)
+    : state_(state), block_(block), layers_(layers) {
+  labels_.fill(kMaxLayers);
+}
+
+void LabelContexts::set(std::uint32_t cell, std::uint32_t label) {
+  const std::uint32_t row = cell / state_.geometry.columns() - block_.row;
+  const std::uint32_t column = cell % state_.geometry.columns() - block_.column;
+  labels_[row * 32 + column] = static_cast<std::uint8_t>(label);
+}
+
+std::uint32_t LabelContexts::layer_at(std::int64_t row, std::int64_t column,
+                                      const LayerRanges& ranges) const {
+  const std::int64_t i = row - block_.row, j = column - block_.column;
+  if (i >= 0 && j >= 0 && i < block_.height && j < block_.width) {
+    return labels_[static_cast<std::size_t>(i * 32 + j)];
+  }
+  if (state_.surface_at(row, column) == kNoSurface) return kMaxLayers;
+  const std::int32_t range =
+      state_.range[static_cast<std::size_t>(row * state_.geometry.columns() + column)];
+  std::uint32_t best = 0;
+  for (std::uint32_t k = 1; k < layers_; ++k) {
+    if (std::abs(range - ranges[k]) < std::abs(range - ranges[best])) best = k;
+  }
+  return best;
+}
+
+LabelContext LabelContexts::at(std::uint32_t cell, const LayerRanges& ranges) const {
+  const std::int64_t row = cell / state_.geometry.columns();
+  const std::int64_t column = cell % state_.geometry.columns();
+  const std::uint32_t w = layer_at(row, column - 1, ranges), n = layer_at(row - 1, column, ranges),
+                      nw = layer_at(row - 1, column - 1, ranges),
+                      ne = layer_at(row - 1, column + 1, ranges);
+  LabelContext c;
+  for (const std::uint32_t known : {w, n, nw, ne}) {
+    if (known == kMaxLayers) continue;
+    c.first = known;
+    break;
+  }
+  for (const std::uint32_t known : {n, ne, nw}) {
+    if (known == kMaxLayers || known == c.first) continue;
+    c.second = static_cast<std::int32_t>(known);
+    break;
+  }
+  const auto on = [](std::uint32_t layer, std::uint32_t wanted) {
+    return layer == kMaxLayers ? 2u : layer == wanted ? 1u : 0u;
+  };
+  c.pattern = (on(nw, c.first) * 3 + on(ne, c.first)) * 3 + on(n, c.first);
+  if (c.second >= 0) {
+    const auto second = static_cast<std::uint32_t>(c.second);
+    c.second_pattern = (on(nw, second) * 3 + on(ne, second)) * 3 + on(n, second);
+  }
+  const std::uint32_t ww = layer_at(row, column - 2, ranges), nn = layer_at(row - 2, column, ranges);
+  c.wide_pattern = (on(ww, c.first) * 3 + on(nn, c.first)) * 3 + on(w, c.first);
+  while (c.run < 3 && layer_at(row, column - 1 - (std::int64_t{2} << c.run) + 1, ranges) == c.first) {
+    ++c.run;
+  }
+  while (c.rise < 3 && layer_at(row - (std::int64_t{2} << c.rise) + 1, column, ranges) == c.first) {
+    ++c.rise;
+  }
+  std::int64_t nearest = std::int64_t{1} << 40;
+  std::uint32_t below = 0;
+  for (std::uint32_t k = 0; k < layers_; ++k) {
+    if (k == c.first) continue;
+    nearest = std::min<std::int64_t>(nearest, std::abs(ranges[k] - ranges[c.first]));
+    below += ranges[k] < ranges[c.first] ? 1 : 0;
+  }
+  c.nearer = below == 0 ? 2 : below == layers_ - 1 ? 0 : 1;
+  std::int64_t bound = state_.settings.step / 8;
+  while (c.gap < 7 && nearest > bound) {
+    bound = bound * 2 + 1;
+    ++c.gap;
+  }
+  return c;
+}
+
+}  // namespace curlidar::compact

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <bit>
+#include <limits>
+#include <optional>
+
+#include "compact/field_search.hpp"
+#include "compact/leaf_fit.hpp"
+
+namespace curlidar::compact {
+namespace {
+
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+/// 256 log2(x), linear between powers of two.
+std::int32_t rough_log2(std::int64_t x) {
+  const int exponent = std::bit_width(static_cast<std::uint64_t>(x)) - 1;
+  const std::int64_t fraction = exponent >= 8 ? x >> (exponent - 8) : x << (8 - exponent);
+  return exponent * 256 + static_cast<std::int32_t>(fraction) - 256;
+}
+
+/// A layer with the ranges it gives to every sample of the leaf.
+struct FittedLayer {
+  LayerCode code;
+  std::vector<std::int32_t> ranges;
+};
+
+class LeafSearch {
+ public:
+  LeafSearch(FieldState& state, const std::vector<std::int32_t>& truth,
+             const SearchSettings& settings, const CostTable& costs, const BlockContext& context)
+      : state_(state),
+        settings_(settings),
+        context_(context),
+        frame_(state.geometry, state.shape(context.block), context.block),
+        samples_(state, frame_, truth, context.block),
+        sink_(costs) {}
+
+  std::int64_t run(Node& node) {
+    try_one_layer();
+    const auto n = static_cast<std::uint32_t>(samples_.size());
+    if (settings_.max_layers > 1 && n >= 4 && best_ > 8 * 256 * settings_.lambda) {
+      try_two_layers();
+      for (std::uint32_t layers = 3; layers <= settings_.max_layers; ++layers) {
+        if (best_leaf_.layers != layers - 1 || n < 2 * layers) break;
+        try_another_layer(layers);
+      }
+    }
+    node.leaf = best_leaf_;
+    node.labels = best_labels_;
+    return best_;
+  }
+
+ private:
+  using Members = std::vector<std::uint32_t>;
+
+  std::vector<std::int32_t> ranges_of(const LayerCode& code) const {
+    const Surface surface = surface_of(state_, context_, frame_, code);
+    std::vector<std::int32_t> ranges(samples_.size());
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      ranges[i] = static_cast<std::int32_t>(surface.range_at(frame_, samples_.directions[i]));
+    }
+    return ranges;
+  }
+
+  std::int64_t error(std::size_t i, std::int32_t range) const {
+    return std::abs(samples_.ranges[i] - range);
+  }
+  /// Cost of a cell's error in J: plain, or with a residual layer on top.
+  std::int64_t error_cost(std::int64_t e, bool residual) const {
+    if (!residual) return e * 256;
+    const std::int64_t at = e * 8 / settings_.residual_step;
+    const auto last = static_cast<std::int64_t>(settings_.residual_costs.size()) - 1;
+    return settings_.residual_costs[static_cast<std::size_t>(std::min(at, last))];
+  }
+
+  Members all_members() const {
+    Members all(samples_.size());
+    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+    return all;
+  }
+
+  /// Most functions (place in kFunctions) worth trying on so many returns.
+  std::uint32_t most_functions(std::size_t members) const {
+    std::uint32_t most = settings_.max_functions;
+    while (most > 1 && kFunctions[most] > members + 1) --most;
+    if (most == 3 && (context_.block.cells() < 16 || members < 12)) most = 2;
+    return most;
+  }
+
+  void consider(const LeafCode& leaf, const std::vector<FittedLayer>& layers);
+  void try_one_layer();
+  void try_two_layers();
+  void try_another_layer(std::uint32_t layers);
+  bool refine(std::uint32_t layers, std::vector<std::uint8_t> labels);
+  std::optional<FittedLayer> best_layer(const Members& members, std::uint32_t layers,
+                                        std::uint32_t index, std::uint32_t used) const;
+
+  FieldState& state_;
+  const SearchSettings& settings_;
+  const BlockContext& context_;
+  PatchFrame frame_;
+  LeafSamples samples_;
+  mutable SearchSink sink_;
+  std::int64_t best_ = kNever;
+  LeafCode best_leaf_;
+  std::vector<std::uint8_t> best_labels_;
+};
+
+/// Takes the leaf if it is the best so far; labels are chosen one after the other.
+void LeafSearch::consider(const LeafCode& leaf, const std::vector<FittedLayer>& layers) {
+  sink_.clear();
+  LeafCode copy = leaf;
+  code_leaf(sink_, context_, static_cast<std::uint32_t>(samples_.size()), copy);
+  const std::int64_t header = sink_.cost() * settings_.lambda;
+  if (header >= best_) return;
+  const bool has_residual = !settings_.residual_costs.empty();
+  for (int residual = 0; residual <= (has_residual ? 1 : 0); ++residual) {
+    std::int64_t cost = header;
+    if (has_residual) cost += (residual != 0 ? 384 : 192) * settings_.lambda;
+    std::vector<std::uint8_t> labels;
+    if (leaf.layers == 1) {
+      for (std::size_t i = 0; i < samples_.size() && cost < best_; ++i) {
+        cost += error_cost(error(i, layers[0].ranges[i]), residual != 0);
+      }
+    } else {
+      labels.resize(samples_.size());
+      LabelContexts contexts(state_, context_.block, leaf.layers);
+      for (std::size_t i = 0; i < samples_.size() && cost < best_; ++i) {
+        LayerRanges ranges{};
+        for (std::uint32_t k = 0; k < leaf.layers; ++k) ranges[k] = layers[k].ranges[i];
+        const LabelContext context = contexts.at(samples_.cells[i], ranges);
+        std::int64_t least = kNever;
+        for (std::uint32_t k = 0; k < leaf.layers; ++k) {
+          sink_.clear();
+          code_label(sink_, context, leaf.layers, k);
+          const std::int64_t j =
+              error_cost(error(i, ranges[k]), residual != 0) + sink_.cost() * settings_.lambda;
+          if (j >= least) continue;
+          least = j;
+          labels[i] = static_cast<std::uint8_t>(k);
+        }
+        cost += least;
+        contexts.set(samples_.cells[i], labels[i]);
+      }
+    }
+    if (cost >= best_) continue;
+    best_ = cost;
+    best_leaf_ = leaf;
+    best_labels_ = std::move(labels);
+  }
+}
+
+void LeafSearch::try_one_layer() {
+  const Members all = all_members();
+  const std::uint32_t most = most_functions(all.size());
+  LeafCode leaf;
+  for (std::uint32_t parent = 0; parent <= context_.parents.count; ++parent) {
+    for (std::uint32_t functions = parent == 0 ? 1 : 0; functions <= most; ++functions) {
+      if (parent > settings_.fitted_parents && functions > 0) break;
+      auto layer = fit_layer(state_, context_, frame_, samples_, all, {}, parent, functions);
+      if (!layer) continue;
+      const std::uint32_t passes = functions >= 2 ? settings_.reweighted_passes : 0;
+      for (std::uint32_t pass = 0;; ++pass) {
+        leaf.layer[0] = *layer;
+        std::vector<std::int32_t> ranges = ranges_of(*layer);
+        std::vector<double> extra;
+        if (pass < passes) {
+          extra.reserve(all.size());
+          for (std::size_t i = 0; i < all.size(); ++i) {
+            extra.push_back(1.0 / static_cast<double>(std::max<std::int64_t>(
+                                      state_.settings.step / 2 + 1, error(i, ranges[i]))));
+          }
+        }
+        consider(leaf, {{*layer, std::move(ranges)}});
+        if (pass >= passes) break;
+        auto next = fit_layer(state_, context_, frame_, samples_, all, extra, parent, functions);
+        if (!next) break;
+        layer = next;
+      }
+    }
+  }
+}
+
+std::optional<FittedLayer> LeafSearch::best_layer(const Members& members, std::uint32_t layers,
+                                                  std::uint32_t index, std::uint32_t used) const {
+  std::int64_t least = kNever;
+  std::optional<FittedLayer> best;
+  const std::uint32_t most = most_functions(members.size());
+  for (std::uint32_t parent = 0; parent <= context_.parents.count; ++parent) {
+    for (std::uint32_t functions = parent == 0 ? 1 : 0; functions <= most; ++functions) {
+      if (parent > settings_.fitted_parents && functions > 0) break;
+      const auto code =
+          fit_layer(state_, context_, frame_, samples_, members, {}, parent, functions);
+      if (!code) continue;
+      sink_.clear();
+      LayerCode copy = *code;
+      code_layer(sink_, context_, layers, index, used, copy);
+      std::int64_t cost = sink_.cost() * settings_.lambda;
+      if (cost >= least) continue;
+      const Surface surface = surface_of(state_, context_, frame_, *code);
+      for (const std::uint32_t i : members) {
+        cost += 256 * error(i, static_cast<std::int32_t>(
+                                   surface.range_at(frame_, samples_.directions[i])));
+      }
+      if (cost >= least) continue;
+      least = cost;
+      best = FittedLayer{*code, {}};
+    }
+  }
+  if (best) best->ranges = ranges_of(best->code);
+  return best;
+}
+
+/// Fits `layers` layers to the samples so labelled, relabels, and again; considers each.
+bool LeafSearch::refine(std::uint32_t layers, std::vector<std::uint8_t> labels) {
+  for (std::uint32_t pass = 0; pass < settings_.layer_passes; ++pass) {
+    LeafCode leaf;
+    leaf.layers = layers;
+    std::vector<FittedLayer> fitted;
+    std::uint32_t used = 0;
+    for (std::uint32_t k = 0; k < layers; ++k) {
+      Members members;
+      for (std::uint32_t i = 0; i < labels.size(); ++i) {
+        if (labels[i] == k) members.push_back(i);
+      }
+      if (members.empty()) return false;
+      auto layer = best_layer(members, layers, k, used);
+      if (!layer) return false;
+      leaf.layer[k] = layer->code;
+      if (layer->code.parent > 0) used |= 1u << (layer->code.parent - 1);
+      fitted.push_back(std::move(*layer));
+    }
+    consider(leaf, fitted);
+    bool changed = false;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+      std::uint8_t nearest = 0;
+      for (std::uint32_t k = 1; k < layers; ++k) {
+        if (error(i, fitted[k].ranges[i]) < error(i, fitted[nearest].ranges[i])) {
+          nearest = static_cast<std::uint8_t>(k);
+        }
+      }
+      changed |= nearest != labels[i];
+      labels[i] = nearest;
+    }
+    if (!changed) break;
+  }
+  return true;
+}
+
+/// Where sorted values fall apart best: at the widest gap, and where the variance between the two
+/// sides is greatest (Otsu). Places in 1..n-1.
+struct Cuts {
+  std::size_t gap = 1, otsu = 1;
+  std::int32_t width = 0;
+};
+
+Cuts cut(const std::vector<std::int32_t>& sorted) {
+  Cuts cuts;
+  const auto n = static_cast<std::int64_t>(sorted.size());
+  std::int64_t total = 0, before = 0;
+  for (const std::int32_t x : sorted) total += x;
+  double greatest = -1;
+  for (std::int64_t i = 1; i < n; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    before += sorted[at - 1];
+    if (sorted[at] - sorted[at - 1] > cuts.width) {
+      cuts.width = sorted[at] - sorted[at - 1];
+      cuts.gap = at;
+    }
+    const double difference = static_cast<double>(before) / static_cast<double>(i) -
+                              static_cast<double>(total - before) / static_cast<double>(n - i);
+    const double between = static_cast<double>(i) * static_cast<double>(n - i) * difference * difference;
+    if (between > greatest) {
+      greatest = between;
+      cuts.otsu = at;
+    }
+  }
+  return cuts;
+}
+
+void LeafSearch::try_two_layers() {
+  std::vector<std::int32_t> logs, sorted;
+  for (const std::int64_t range : samples_.ranges) logs.push_back(rough_log2(range));
+  sorted = logs;
+  std::sort(sorted.begin(), sorted.end());
+  const Cuts cuts = cut(sorted);
+  std::vector<std::size_t> places = {cuts.gap};
+  if (cuts.otsu != cuts.gap) places.push_back(cuts.otsu);
+  for (const std::size_t place : places) {
+    std::vector<std::uint8_t> labels(logs.size());
+    for (std::size_t i = 0; i < logs.size(); ++i) labels[i] = logs[i] >= sorted[place] ? 1 : 0;
+    refine(2, std::move(labels));
+  }
+}
+
+void LeafSearch::try_another_layer(std::uint32_t layers) {
+  std::vector<std::uint8_t> labels = best_labels_;
+  std::vector<std::int64_t> errors(layers, 0);
+  std::vector<std::vector<std::int32_t>> ranges;
+  for (std::uint32_t k = 0; k + 1 < layers; ++k) ranges.push_back(ranges_of(best_leaf_.layer[k]));
+  for (std::size_t i = 0; i < labels.size(); ++i) errors[labels[i]] += error(i, ranges[labels[i]][i]);
+  const auto worst = static_cast<std::uint8_t>(
+      std::max_element(errors.begin(), errors.end()) - errors.begin());
+  std::vector<std::int32_t> sorted;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] == worst) sorted.push_back(rough_log2(samples_.ranges[i]));
+  }
+  if (sorted.size() < 2) return;
+  std::sort(sorted.begin(), sorted.end());
+  const std::int32_t bound = sorted[cut(sorted).otsu];
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] == worst && rough_log2(samples_.ranges[i]) >= bound) {
+      labels[i] = static_cast<std::uint8_t>(layers - 1);
+    }
+  }
+  refine(layers, std::move(labels));
+}
+
+}  // namespace
+
+std::int64_t search_leaf(FieldState& state, const std::vector<std::int32_t>& truth,
+                         const SearchSettings& settings, const CostTable& costs,
+                         const BlockContext& context, Node& node) {
+  return LeafSearch(state, truth, settings, costs, context).run(node);
+}
+
+}  // namespace curlidar::compact
