@@ -58,7 +58,8 @@ EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& tr
       state.surfaces.erase(state.surfaces.begin() + static_cast<std::ptrdiff_t>(surfaces),
                            state.surfaces.end());
       for (std::uint32_t i = 0; i < block.height; ++i) {
-        std::fill_n(state.surface.begin() + static_cast<std::ptrdiff_t>(state.cell(block.row + i, block.column)),
+        std::fill_n(state.surface.begin() +
+                        static_cast<std::ptrdiff_t>(state.cell(block.row + i, block.column)),
                     block.width, kNoSurface);
       }
       code_node(counter, state, node);

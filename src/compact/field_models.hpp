@@ -60,23 +60,23 @@ enum Decision : std::uint32_t {
 };
 
 inline constexpr std::array<DecisionKind, kDecisions> kDecisionKinds = {{
-    {{12, 12 * 16, 12 * 12, 12 * 20}, 12, FieldPart::partition},          // kSplit
-    {{24, 24 * 9, 24 * 3, 2}, 2, FieldPart::partition},                   // kSplitKind
-    {{18, 18 * 16, 18 * 15, 18 * 3}, 3, FieldPart::modes},                // kLayerCount
-    {{12, 12 * 20, 12 * 6, 12 * 16}, 2, FieldPart::modes},                // kNewSurface
-    {{72, 72 * 2, 72 * 5, 24}, 6, FieldPart::modes},                      // kParent
-    {{72, 72 * 4, 72 * 4, 72 * 3}, 6, FieldPart::modes},                  // kFunctionCount
-    {{12, 12 * 4, 4, 5}, 1, FieldPart::coefficients},                     // kRangeZero
-    {{2, 4, 2, 5}, 1, FieldPart::coefficients},                           // kRangeSign
-    {{24, 24 * 4, 24 * 2, 24}, 1, FieldPart::coefficients},               // kRangeClass
-    {{24, 48, 48, 24}, 1, FieldPart::coefficients},                       // kRangeBits
-    {{48, 48 * 3, 48 * 6, 48 * 4}, 12, FieldPart::coefficients},          // kCoefficientZero
-    {{12, 36, 24, 12}, 1, FieldPart::coefficients},                       // kCoefficientSign
-    {{12 * 24, 24 * 18, 24 * 24, 24}, 2, FieldPart::coefficients},        // kCoefficientClass
-    {{24, 48, 24 * 6, 24}, 1, FieldPart::coefficients},                   // kCoefficientBits
-    {{162, 486, 729, 1024}, 9, FieldPart::labels},                        // kLabelFirst
-    {{81, 54, 81, 96}, 3, FieldPart::labels},                             // kLabelSecond
-    {{24, 24, 3, 24}, 1, FieldPart::labels},                              // kLabelRest
+    {{12, 12 * 16, 12 * 12, 12 * 20}, 12, FieldPart::partition},    // kSplit
+    {{24, 24 * 9, 24 * 3, 2}, 2, FieldPart::partition},             // kSplitKind
+    {{18, 18 * 16, 18 * 15, 18 * 3}, 3, FieldPart::modes},          // kLayerCount
+    {{12, 12 * 20, 12 * 6, 12 * 16}, 2, FieldPart::modes},          // kNewSurface
+    {{72, 72 * 2, 72 * 5, 24}, 6, FieldPart::modes},                // kParent
+    {{72, 72 * 4, 72 * 4, 72 * 3}, 6, FieldPart::modes},            // kFunctionCount
+    {{12, 12 * 4, 4, 5}, 1, FieldPart::coefficients},               // kRangeZero
+    {{2, 4, 2, 5}, 1, FieldPart::coefficients},                     // kRangeSign
+    {{24, 24 * 4, 24 * 2, 24}, 1, FieldPart::coefficients},         // kRangeClass
+    {{24, 48, 48, 24}, 1, FieldPart::coefficients},                 // kRangeBits
+    {{48, 48 * 3, 48 * 6, 48 * 4}, 12, FieldPart::coefficients},    // kCoefficientZero
+    {{12, 36, 24, 12}, 1, FieldPart::coefficients},                 // kCoefficientSign
+    {{12 * 24, 24 * 18, 24 * 24, 24}, 2, FieldPart::coefficients},  // kCoefficientClass
+    {{24, 48, 24 * 6, 24}, 1, FieldPart::coefficients},             // kCoefficientBits
+    {{162, 486, 729, 1024}, 9, FieldPart::labels},                  // kLabelFirst
+    {{81, 54, 81, 96}, 3, FieldPart::labels},                       // kLabelSecond
+    {{24, 24, 3, 24}, 1, FieldPart::labels},                        // kLabelRest
 }};
 
 /// Where the models of every decision lie in the table.

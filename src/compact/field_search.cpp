@@ -50,8 +50,8 @@ std::int64_t PartitionSearch::search(Node& node) {
     code_split(sink, context, state_.settings, split);
     return sink.cost() * settings_.lambda;
   };
-  std::int64_t best = search_leaf(state_, truth_, settings_, costs_, context, node) +
-                      split_cost(Split::none);
+  std::int64_t best =
+      search_leaf(state_, truth_, settings_, costs_, context, node) + split_cost(Split::none);
   node.split = Split::none;
   if (cells.size() > 1 && best > 4 * 256 * settings_.lambda) {
     for (const Split split : {Split::quad, Split::rows, Split::columns}) {

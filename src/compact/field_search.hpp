@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds the partition, layers and coefficients of a segment: the least J = sum |error| + lambda bits.
-// Encoder only. Integers decide: errors in Q16 metres, costs in 1/256 bit.
+// Finds the partition, layers and coefficients of a segment: the least J = sum |error| + lambda
+// bits. Encoder only. Integers decide: errors in Q16 metres, costs in 1/256 bit.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,7 @@ class SearchSink {
 
 /// How hard to search.
 struct SearchSettings {
-  std::int64_t lambda = 0;           ///< Q16 metres a bit
+  std::int64_t lambda = 0;  ///< Q16 metres a bit
   std::uint32_t max_layers = 4;
   std::uint32_t max_functions = 3;   ///< place in kFunctions
   std::uint32_t fitted_parents = 2;  ///< parents that corrections are fitted on

@@ -46,8 +46,8 @@ class FieldState {
   const Geometry& geometry;
   const std::vector<std::uint8_t>& occupied;
   const FieldSettings settings;
-  std::vector<std::int32_t> range;    ///< of each cell as the field gives it
-  std::vector<std::int32_t> surface;  ///< of each cell, kNoSurface where not coded or empty
+  std::vector<std::int32_t> range;        ///< of each cell as the field gives it
+  std::vector<std::int32_t> surface;      ///< of each cell, kNoSurface where not coded or empty
   std::vector<std::uint8_t> depth_class;  ///< of the leaf of each cell: layers - 1
   std::vector<PlacedSurface> surfaces;
 

@@ -42,12 +42,14 @@ BlockContext block_context(FieldState& state, const Block& block, std::uint32_t 
     const auto at = state.cell(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(column));
     depth = std::min<std::uint32_t>(state.depth_class[at], 2) + 1;
   };
-  neighbour(block.row + block.height / 2, std::int64_t{block.column} - 1, c.left_size, c.left_depth);
+  neighbour(block.row + block.height / 2, std::int64_t{block.column} - 1, c.left_size,
+            c.left_depth);
   neighbour(std::int64_t{block.row} - 1, block.column + block.width / 2, c.above_size,
             c.above_depth);
 
-  const Direction& middle = state.geometry.directions()[state.cell(
-      block.row + block.height / 2, block.column + block.width / 2)];
+  const Direction& middle =
+      state.geometry
+          .directions()[state.cell(block.row + block.height / 2, block.column + block.width / 2)];
   std::int64_t low = 0, high = 0;
   for (std::uint32_t k = 0; k < c.parents.count; ++k) {
     const PlacedSurface& parent = state.surfaces[static_cast<std::size_t>(c.parents.surface[k])];
@@ -63,8 +65,8 @@ BlockContext block_context(FieldState& state, const Block& block, std::uint32_t 
 Surface surface_of(const FieldState& state, const BlockContext& c, const PatchFrame& frame,
                    const LayerCode& layer) {
   if (layer.parent == 0) {
-    const std::int64_t step = std::max<std::int64_t>(
-        mul_shift(state.settings.step, frame.shape.norm, 30), 1);
+    const std::int64_t step =
+        std::max<std::int64_t>(mul_shift(state.settings.step, frame.shape.norm, 30), 1);
     const std::int64_t range =
         std::clamp(c.parents.range + layer.range_steps * step, kMinRange, kMaxRange);
     const Plane plane = facing_plane(frame, range);
@@ -134,9 +136,11 @@ LabelContext LabelContexts::at(std::uint32_t cell, const LayerRanges& ranges) co
     const auto second = static_cast<std::uint32_t>(c.second);
     c.second_pattern = (on(nw, second) * 3 + on(ne, second)) * 3 + on(n, second);
   }
-  const std::uint32_t ww = layer_at(row, column - 2, ranges), nn = layer_at(row - 2, column, ranges);
+  const std::uint32_t ww = layer_at(row, column - 2, ranges),
+                      nn = layer_at(row - 2, column, ranges);
   c.wide_pattern = (on(ww, c.first) * 3 + on(nn, c.first)) * 3 + on(w, c.first);
-  while (c.run < 3 && layer_at(row, column - 1 - (std::int64_t{2} << c.run) + 1, ranges) == c.first) {
+  while (c.run < 3 &&
+         layer_at(row, column - 1 - (std::int64_t{2} << c.run) + 1, ranges) == c.first) {
     ++c.run;
   }
   while (c.rise < 3 && layer_at(row - (std::int64_t{2} << c.rise) + 1, column, ranges) == c.first) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The syntax of the field, once for reading, writing and counting: partition, layers, coefficients,
-// labels. A sink has `bit(contexts, value)` and `plain(part, value)`; a reading one ignores the value
-// and returns what it read.
+// labels. A sink has `bit(contexts, value)` and `plain(part, value)`; a reading one ignores the
+// value and returns what it read.
 #pragma once
 
 #include <algorithm>
@@ -17,10 +17,10 @@ namespace curlidar::compact {
 
 /// One layer of a leaf as it is written.
 struct LayerCode {
-  std::uint32_t parent = 0;     ///< 1 + place among the parents; 0 = a new surface
-  std::uint32_t functions = 0;  ///< place in kFunctions
-  std::int32_t range_steps = 0; ///< of a new surface: its range against the expected one
-  Quantised q{};                ///< q[0] stays 0 for a new surface
+  std::uint32_t parent = 0;      ///< 1 + place among the parents; 0 = a new surface
+  std::uint32_t functions = 0;   ///< place in kFunctions
+  std::int32_t range_steps = 0;  ///< of a new surface: its range against the expected one
+  Quantised q{};                 ///< q[0] stays 0 for a new surface
 };
 
 struct LeafCode {
@@ -34,11 +34,11 @@ enum class Split : std::uint8_t { none, quad, rows, columns };
 struct BlockContext {
   Block block;
   Parents parents;
-  std::uint32_t size = 0;      ///< class of its cells, 0..5
-  std::uint32_t shape = 0;     ///< class of shorter side and aspect, 0..11
-  std::uint32_t filled = 0;    ///< class of the share of cells with a return, 0..2
-  std::uint32_t few = 0;       ///< class of the number of returns, 0..3
-  std::uint32_t spread = 0;    ///< class of the parents' disagreement at the middle, 0..4
+  std::uint32_t size = 0;    ///< class of its cells, 0..5
+  std::uint32_t shape = 0;   ///< class of shorter side and aspect, 0..11
+  std::uint32_t filled = 0;  ///< class of the share of cells with a return, 0..2
+  std::uint32_t few = 0;     ///< class of the number of returns, 0..3
+  std::uint32_t spread = 0;  ///< class of the parents' disagreement at the middle, 0..4
   std::uint32_t left_size = 0, above_size = 0;    ///< 0 none, 1 smaller, 2 equal, 3 larger block
   std::uint32_t left_depth = 0, above_depth = 0;  ///< 0 none, 1 one layer, 2 two, 3 more
   std::array<std::uint32_t, Parents::kMost> parent_functions{};  ///< places in kFunctions
@@ -129,11 +129,11 @@ std::int32_t code_range_steps(Sink& sink, const BlockContext& c, std::uint32_t l
   const std::uint32_t magnitude = code_magnitude(
       sink, FieldPart::coefficients, static_cast<std::uint32_t>(std::abs(value)) - (value != 0),
       [&](std::uint32_t at, bool bit) {
-        return sink.bit(
-            contexts_of(kRangeClass, {at, at * 4 + known, at * 2 + late, at}, 0), bit);
+        return sink.bit(contexts_of(kRangeClass, {at, at * 4 + known, at * 2 + late, at}, 0), bit);
       },
       [&](std::uint32_t size, bool bit) {
-        return sink.bit(contexts_of(kRangeBits, {size, size * 2 + negative, size * 2 + late, size}, 0), bit);
+        return sink.bit(
+            contexts_of(kRangeBits, {size, size * 2 + negative, size * 2 + late, size}, 0), bit);
       });
   const auto steps = static_cast<std::int32_t>(std::min(magnitude + 1, std::uint32_t{1} << 24));
   return negative ? -steps : steps;
@@ -148,8 +148,8 @@ std::int32_t code_coefficient(Sink& sink, const BlockContext& c, bool fresh, std
   const std::uint32_t kind = base * 4 + big * 2 + (layer > 0 ? 1 : 0);
   const std::uint32_t e = std::min(energy, 3u);
   const std::uint32_t f = functions - 1;
-  if (!sink.bit(contexts_of(kCoefficientZero,
-                            {kind, kind * 3 + f, kind * 6 + c.size, kind * 4 + e}, base),
+  if (!sink.bit(contexts_of(kCoefficientZero, {kind, kind * 3 + f, kind * 6 + c.size, kind * 4 + e},
+                            base),
                 value != 0)) {
     return 0;
   }
@@ -158,14 +158,15 @@ std::int32_t code_coefficient(Sink& sink, const BlockContext& c, bool fresh, std
   const std::uint32_t magnitude = code_magnitude(
       sink, FieldPart::coefficients, static_cast<std::uint32_t>(std::abs(value)) - (value != 0),
       [&](std::uint32_t at, bool bit) {
-        return sink.bit(contexts_of(kCoefficientClass,
-                                    {base * 24 + at, (f * 6 + c.size) * 24 + at,
-                                     (k * 4 + e) * 24 + at, at},
-                                    fresh ? 1 : 0),
-                        bit);
+        return sink.bit(
+            contexts_of(kCoefficientClass,
+                        {base * 24 + at, (f * 6 + c.size) * 24 + at, (k * 4 + e) * 24 + at, at},
+                        fresh ? 1 : 0),
+            bit);
       },
       [&](std::uint32_t size, bool bit) {
-        return sink.bit(contexts_of(kCoefficientBits, {size, size * 2 + fresh, size * 6 + k, size}, 0), bit);
+        return sink.bit(
+            contexts_of(kCoefficientBits, {size, size * 2 + fresh, size * 6 + k, size}, 0), bit);
       });
   const auto steps =
       static_cast<std::int32_t>(std::min<std::uint32_t>(magnitude + 1, kMaxQuantised));
@@ -184,7 +185,9 @@ void code_layer(Sink& sink, const BlockContext& c, std::uint32_t layers, std::ui
     const std::uint32_t n = std::min(count, 4u) - 1;
     const bool fresh =
         sink.bit(contexts_of(kNewSurface,
-                             {s, s * 20 + n * 5 + c.spread, s * 6 + std::min(layers - 1, 2u) * 2 + (used_parents != 0 ? 1u : 0u), s * 16 + c.left_depth * 4 + c.above_depth},
+                             {s, s * 20 + n * 5 + c.spread,
+                              s * 6 + std::min(layers - 1, 2u) * 2 + (used_parents != 0 ? 1u : 0u),
+                              s * 16 + c.left_depth * 4 + c.above_depth},
                              late),
                  layer.parent == 0);
     if (fresh) {
@@ -211,10 +214,11 @@ void code_layer(Sink& sink, const BlockContext& c, std::uint32_t layers, std::ui
   std::uint32_t functions = fresh ? 1 : 0;
   for (; functions + 1 < kFunctions.size(); ++functions) {
     const std::uint32_t at = ((functions * 2 + (fresh ? 1u : 0u)) * 6 + c.size) * 2 + late;
-    if (!sink.bit(contexts_of(kFunctionCount,
-                              {at, at * 4 + inherited, at * 4 + c.few, at * 3 + std::min(layers - 1, 2u)},
-                              functions * 2 + (fresh ? 1u : 0u)),
-                  functions < layer.functions)) {
+    if (!sink.bit(
+            contexts_of(kFunctionCount,
+                        {at, at * 4 + inherited, at * 4 + c.few, at * 3 + std::min(layers - 1, 2u)},
+                        functions * 2 + (fresh ? 1u : 0u)),
+            functions < layer.functions)) {
       break;
     }
   }
@@ -256,15 +260,15 @@ Surface surface_of(const FieldState& state, const BlockContext& c, const PatchFr
 
 /// What the label of one cell is told by.
 struct LabelContext {
-  std::uint32_t first = 0;   ///< the layer that the nearest known neighbour lies on
-  std::int32_t second = -1;  ///< another layer among the neighbours, -1 if none
-  std::uint32_t pattern = 0;          ///< N, NW, NE on `first`: 0 no, 1 yes, 2 unknown; base 3
-  std::uint32_t second_pattern = 0;   ///< the same for `second`
-  std::uint32_t wide_pattern = 0;     ///< WW, NN, W on `first`; base 3
-  std::uint32_t gap = 0;              ///< class of the distance to the next layer in depth, 0..7
-  std::uint32_t nearer = 0;           ///< `first` is 0 the farthest, 1 between, 2 the nearest layer
-  std::uint32_t run = 0;              ///< class of how long W-ward cells are on `first`, 0..3
-  std::uint32_t rise = 0;             ///< class of how long N-ward cells are on `first`, 0..3
+  std::uint32_t first = 0;           ///< the layer that the nearest known neighbour lies on
+  std::int32_t second = -1;          ///< another layer among the neighbours, -1 if none
+  std::uint32_t pattern = 0;         ///< N, NW, NE on `first`: 0 no, 1 yes, 2 unknown; base 3
+  std::uint32_t second_pattern = 0;  ///< the same for `second`
+  std::uint32_t wide_pattern = 0;    ///< WW, NN, W on `first`; base 3
+  std::uint32_t gap = 0;             ///< class of the distance to the next layer in depth, 0..7
+  std::uint32_t nearer = 0;          ///< `first` is 0 the farthest, 1 between, 2 the nearest layer
+  std::uint32_t run = 0;             ///< class of how long W-ward cells are on `first`, 0..3
+  std::uint32_t rise = 0;            ///< class of how long N-ward cells are on `first`, 0..3
 };
 
 /// Predicted ranges of a cell by layer.

@@ -22,7 +22,8 @@ Geometry::Geometry(std::vector<std::int32_t> elevations, std::uint32_t turn_colu
   for (const std::int32_t elevation : elevations_) {
     const SinCos up = sin_cos_q30(static_cast<std::uint32_t>(elevation));
     const auto z = static_cast<std::int32_t>(shift_right_round(up.sin, 8));
-    for (const SinCos& a : azimuths) directions_.push_back({q22(up.cos, a.cos), q22(up.cos, a.sin), z});
+    for (const SinCos& a : azimuths)
+      directions_.push_back({q22(up.cos, a.cos), q22(up.cos, a.sin), z});
   }
 }
 

@@ -76,14 +76,15 @@ Start start_of(const FieldState& state, const BlockContext& context, const Patch
         div_round(median_range(samples, members) - context.parents.range, step);
     start.layer.range_steps =
         static_cast<std::int32_t>(std::clamp<std::int64_t>(steps, -(1 << 23), 1 << 23));
-    range = std::clamp(context.parents.range + start.layer.range_steps * step, kMinRange, kMaxRange);
+    range =
+        std::clamp(context.parents.range + start.layer.range_steps * step, kMinRange, kMaxRange);
     start.plane = facing_plane(frame, range);
   } else {
     start.plane =
         state.surfaces[static_cast<std::size_t>(context.parents.surface[parent - 1])].surface.plane;
-    const Direction& middle = state.geometry.directions()[state.cell(
-        context.block.row + context.block.height / 2,
-        context.block.column + context.block.width / 2)];
+    const Direction& middle =
+        state.geometry.directions()[state.cell(context.block.row + context.block.height / 2,
+                                               context.block.column + context.block.width / 2)];
     range = range_of(start.plane.at(middle));
   }
   start.step_q40 = coefficient_step((std::int64_t{1} << 46) / range, state.settings.step);

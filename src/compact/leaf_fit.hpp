@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fits one layer of a leaf to returns. Encoder only: doubles, but only +, -, *, / and sqrt in a fixed
-// order, which every compiler rounds alike; every decision is taken on the integer ranges that the
-// decoder will see.
+// Fits one layer of a leaf to returns. Encoder only: doubles, but only +, -, *, / and sqrt in a
+// fixed order, which every compiler rounds alike; every decision is taken on the integer ranges
+// that the decoder will see.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ namespace curlidar::compact {
 struct LeafSamples {
   std::vector<std::uint32_t> cells;
   std::vector<Direction> directions;
-  std::vector<std::int64_t> ranges;                        ///< Q16
-  std::vector<double> weights;                             ///< r^4 in metres
-  std::vector<std::array<double, kMaxFunctions>> basis;    ///< B0..B5
+  std::vector<std::int64_t> ranges;                      ///< Q16
+  std::vector<double> weights;                           ///< r^4 in metres
+  std::vector<std::array<double, kMaxFunctions>> basis;  ///< B0..B5
 
   LeafSamples(const FieldState& state, const PatchFrame& frame,
               const std::vector<std::int32_t>& truth, const Block& block);

@@ -13,7 +13,7 @@ constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
 /// 256 log2(x), linear between powers of two.
 std::int32_t rough_log2(std::int64_t x) {
-  const int exponent = std::bit_width(static_cast<std::uint64_t>(x)) - 1;
+  const auto exponent = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(x))) - 1;
   const std::int64_t fraction = exponent >= 8 ? x >> (exponent - 8) : x << (8 - exponent);
   return exponent * 256 + static_cast<std::int32_t>(fraction) - 256;
 }
@@ -199,8 +199,9 @@ std::optional<FittedLayer> LeafSearch::best_layer(const Members& members, std::u
       if (cost >= least) continue;
       const Surface surface = surface_of(state_, context_, frame_, *code);
       for (const std::uint32_t i : members) {
-        cost += 256 * error(i, static_cast<std::int32_t>(
-                                   surface.range_at(frame_, samples_.directions[i])));
+        cost +=
+            256 *
+            error(i, static_cast<std::int32_t>(surface.range_at(frame_, samples_.directions[i])));
       }
       if (cost >= least) continue;
       least = cost;
@@ -269,7 +270,8 @@ Cuts cut(const std::vector<std::int32_t>& sorted) {
     }
     const double difference = static_cast<double>(before) / static_cast<double>(i) -
                               static_cast<double>(total - before) / static_cast<double>(n - i);
-    const double between = static_cast<double>(i) * static_cast<double>(n - i) * difference * difference;
+    const double between =
+        static_cast<double>(i) * static_cast<double>(n - i) * difference * difference;
     if (between > greatest) {
       greatest = between;
       cuts.otsu = at;
@@ -298,9 +300,10 @@ void LeafSearch::try_another_layer(std::uint32_t layers) {
   std::vector<std::int64_t> errors(layers, 0);
   std::vector<std::vector<std::int32_t>> ranges;
   for (std::uint32_t k = 0; k + 1 < layers; ++k) ranges.push_back(ranges_of(best_leaf_.layer[k]));
-  for (std::size_t i = 0; i < labels.size(); ++i) errors[labels[i]] += error(i, ranges[labels[i]][i]);
-  const auto worst = static_cast<std::uint8_t>(
-      std::max_element(errors.begin(), errors.end()) - errors.begin());
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    errors[labels[i]] += error(i, ranges[labels[i]][i]);
+  const auto worst =
+      static_cast<std::uint8_t>(std::max_element(errors.begin(), errors.end()) - errors.begin());
   std::vector<std::int32_t> sorted;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     if (labels[i] == worst) sorted.push_back(rough_log2(samples_.ranges[i]));

@@ -10,7 +10,9 @@ constexpr std::int64_t kMaxPlane = std::int64_t{1} << 38;
 constexpr std::int64_t kMaxCurve = std::int64_t{1} << 36;
 constexpr std::int64_t kMaxFunction = std::int64_t{1} << 23;
 
-std::int64_t clamp_to(std::int64_t x, std::int64_t limit) { return std::clamp(x, -limit, limit); }
+std::int64_t clamp_to(std::int64_t x, std::int64_t limit) {
+  return std::clamp(x, -limit, limit);
+}
 
 /// floor(2^(30 + bits / 2) / sqrt(x)) for x in Q(bits), bits even; 0 for x <= 0.
 std::int64_t inverse_root(std::int64_t x, unsigned bits) {
@@ -70,7 +72,8 @@ PatchShape make_shape(const Geometry& geometry, const Block& block) {
   }
   shape.scale_v = scale_of(mean_vv);
 
-  if (w > 2 && shape.scale_u > 0) shape.norm_uu = inverse_root(n * 4 * (w * w - 4) * (1 << 20) / (5 * (w * w - 1)), 20);
+  if (w > 2 && shape.scale_u > 0)
+    shape.norm_uu = inverse_root(n * 4 * (w * w - 4) * (1 << 20) / (5 * (w * w - 1)), 20);
   if (h > 2 && shape.scale_v > 0) {
     std::int64_t cubes = 0, fourths = 0;
     for (std::int64_t i = 0; i < h; ++i) {

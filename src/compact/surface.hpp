@@ -30,8 +30,8 @@ struct PatchShape {
   std::int64_t norm = 0;     ///< 1 / sqrt(cells), Q30
   std::int64_t scale_u = 0;  ///< 1 / rms of u over the cells, Q14; 0 where they do not spread
   std::int64_t scale_v = 0;
-  std::int64_t skew_v = 0;                       ///< mean of the cube of v / rms, Q20
-  std::int64_t norm_uu = 0, norm_vv = 0;         ///< 1 / norms of the quadratic functions, Q30
+  std::int64_t skew_v = 0;                ///< mean of the cube of v / rms, Q20
+  std::int64_t norm_uu = 0, norm_vv = 0;  ///< 1 / norms of the quadratic functions, Q30
 };
 
 PatchShape make_shape(const Geometry& geometry, const Block& block);
