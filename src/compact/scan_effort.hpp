@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How settings that people understand become settings of the coder: where to tune.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "compact/field_search.hpp"
+
+namespace curlidar::compact {
+
+inline constexpr std::uint32_t kLeastEffort = 1, kMostEffort = 9, kDefaultEffort = 4;
+
+/// The Lagrangian: what a bit is worth, in thousandths of the step of the finest layer.
+inline constexpr std::uint32_t kLambdaPerMille = 170;
+
+/// How hard an encoder searches.
+struct Effort {
+  SearchSettings search;
+  std::uint32_t passes = 1;  ///< over the field, each with costs learnt by the one before
+  std::uint32_t mask_effort = 1;
+};
+
+/// The search for an effort of 1..9 (clamped). `residual_step` 0: no residual layer follows.
+Effort search_settings(std::uint32_t effort, std::int32_t step, std::int32_t residual_step,
+                       std::uint32_t lambda_per_mille = kLambdaPerMille);
+
+/// Cost of a cell's error under a residual layer, in Q16 metres / 256, by error * 8 /
+/// residual_step: the least over q of |error - q step| plus lambda (Q16 metres a bit) times the
+/// usual bits of q. Above the last entry it hardly grows.
+std::vector<std::int64_t> residual_cost_table(std::int32_t residual_step, std::int64_t lambda);
+
+/// Steps of field and residual layer.
+struct Steps {
+  std::int32_t step = 0;
+  std::int32_t residual_step = 0;
+  std::uint32_t root_log2 = 4;
+  std::uint32_t smallest_leaf = 8;
+};
+
+/// Steps that give about the wanted mean error (Q16 metres), times `scale_q16` / 65536: the codec
+/// searches over the scale, in which the reached error rises monotonically but for noise. Three
+/// regimes, chosen by the wanted error alone: from 3 cm on a field without residuals, from 4.5 mm
+/// to 3 cm field and residuals of one step, below a coarse field under fine residuals.
+Steps steps_for_error(std::int64_t mean_error, std::int64_t scale_q16 = 65536);
+
+/// Steps for a given D: no residual layer.
+Steps steps_for_step(std::int32_t step);
+
+}  // namespace curlidar::compact
