@@ -9,7 +9,7 @@
 
 #include "base/bytes.hpp"
 
-namespace curlidar {
+namespace curlidar::compact {
 
 /// Decoded ranges lie in [1, kMaxRangeQ16], in 1/65536 m.
 inline constexpr std::int32_t kMaxRangeQ16 = 1 << 30;
@@ -25,18 +25,29 @@ struct ResidualSegment {
   std::span<const std::int32_t> surface;   ///< equal for the cells of one layer of one leaf
 };
 
-/// Codes `ranges` (1/65536 m) to multiples of `step` (1/65536 m, in [1, 2^24]) about predictions
-/// and gives the bytes; `decoded` receives what decode_residual will give (0 in empty cells).
-/// `lambda` is what a bit is worth, in 1/256 of 1/65536 m; 0 rounds to the nearest level, and then
-/// every |decoded - range| of a coded cell is at most step / 2, ranges in [1, kMaxRangeQ16].
-/// O(cells), about 1 us a coded cell.
+/// The levels that a range may decode to.
+struct ResidualLevels {
+  /// Their distance in 1/65536 m, in [1, 2^24]; one of them lies on the prediction.
+  std::int32_t step = 1;
+  /// If not zero, in [2^16, 2^40]: the levels are the multiples of this many 1/2^32 m instead, and
+  /// `step` is ignored. For ranges that are multiples of a sensor's unit: at a lattice of that unit
+  /// they decode exactly, at no more bits than any other levels as far apart.
+  std::uint64_t lattice_q32 = 0;
+};
+
+/// Codes `ranges` (1/65536 m, in [1, kMaxRangeQ16]) and gives the bytes; `decoded` receives what
+/// decode_residual will give (0 in empty cells). `lambda` is what a bit is worth, in 1/256 of
+/// 1/65536 m; 0 takes the nearest level, and then |decoded - range| of every coded cell is at most
+/// half a step, or half a lattice distance and half of 1/65536 m. O(cells).
 std::vector<std::byte> encode_residual(const ResidualSegment& segment,
-                                       std::span<const std::int32_t> ranges, std::int32_t step,
-                                       std::uint32_t lambda, std::span<std::int32_t> decoded);
+                                       std::span<const std::int32_t> ranges,
+                                       const ResidualLevels& levels, std::uint32_t lambda,
+                                       std::span<std::int32_t> decoded);
 
 /// Decodes what encode_residual wrote. Any bytes decode to something; of bytes that end too early,
-/// the rows before the returned one (in [0, rows]) are complete, and later cells hold their field.
-std::size_t decode_residual(ByteSpan bytes, const ResidualSegment& segment, std::int32_t step,
-                            std::span<std::int32_t> decoded);
+/// the rows before the returned one (in [0, rows]) are complete, and rows after that hold their
+/// field.
+std::size_t decode_residual(ByteSpan bytes, const ResidualSegment& segment,
+                            const ResidualLevels& levels, std::span<std::int32_t> decoded);
 
-}  // namespace curlidar
+}  // namespace curlidar::compact

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compact/residual_coder.hpp"
 
+#include "compact/residual_predictor.hpp"
+#include "compact/residual_symbols.hpp"
+#include "entropy/embedded_priors.hpp"
+#include "entropy/priors.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +14,7 @@
 #include <random>
 #include <vector>
 
-namespace curlidar {
+namespace curlidar::compact {
 namespace {
 
 /// A made-up segment: walls seen with noise, holes in the mask, a field that is off by a little.
@@ -55,8 +60,8 @@ TEST_P(ResidualSteps, DecodesToWhatTheEncoderSaysWithinHalfAStep) {
   const std::int32_t step = GetParam();
   const Scene scene(24, 96, 1);
   std::vector<std::int32_t> told(scene.cells()), decoded(scene.cells());
-  const auto bytes = encode_residual(scene.segment(), scene.ranges, step, 0, told);
-  EXPECT_EQ(decode_residual(bytes, scene.segment(), step, decoded), scene.rows);
+  const auto bytes = encode_residual(scene.segment(), scene.ranges, {step}, 0, told);
+  EXPECT_EQ(decode_residual(bytes, scene.segment(), {step}, decoded), scene.rows);
   EXPECT_EQ(decoded, told);
   for (std::size_t i = 0; i < scene.cells(); ++i) {
     if (!scene.occupied[i]) {
@@ -71,12 +76,68 @@ TEST_P(ResidualSteps, DecodesToWhatTheEncoderSaysWithinHalfAStep) {
 INSTANTIATE_TEST_SUITE_P(Steps, ResidualSteps,
                          testing::Values(1, 2, 131, 524, 1311, 6554, 65536, 1 << 24));
 
+TEST(ResidualCoder, RangesOnALatticeDecodeExactly) {
+  constexpr std::uint64_t two_mm = 8589935;  // 1/2^32 m
+  Scene scene(24, 96, 9);
+  for (std::int32_t& range : scene.ranges) {
+    const std::uint64_t multiple =
+        ((static_cast<std::uint64_t>(range) << 16) + two_mm / 2) / two_mm;
+    range = static_cast<std::int32_t>((multiple * two_mm + 32768) >> 16);
+  }
+  const auto largest_error = [&](const ResidualLevels& levels) {
+    std::vector<std::int32_t> told(scene.cells()), decoded(scene.cells());
+    const auto bytes = encode_residual(scene.segment(), scene.ranges, levels, 0, told);
+    EXPECT_EQ(decode_residual(bytes, scene.segment(), levels, decoded), scene.rows);
+    EXPECT_EQ(decoded, told);
+    std::int32_t largest = 0;
+    for (std::size_t i = 0; i < scene.cells(); ++i) {
+      if (!scene.occupied[i] || !scene.coded[i]) continue;
+      largest = std::max(largest, std::abs(decoded[i] - scene.ranges[i]));
+    }
+    return largest;
+  };
+  EXPECT_EQ(largest_error({.step = 1, .lattice_q32 = two_mm}), 0);
+  EXPECT_LE(largest_error({.step = 1, .lattice_q32 = 3 * two_mm}), 132);
+  EXPECT_LE(largest_error({.step = 1, .lattice_q32 = std::uint64_t{1} << 40}), 1 << 23);
+}
+
+TEST(ResidualCoder, LevelsBeyondTheLimitsAreTakenAsTheNearestInside) {
+  const Scene scene(4, 16, 10);
+  const auto bytes = random_bytes(400, 11);
+  const auto decode = [&](const ResidualLevels& levels) {
+    std::vector<std::int32_t> decoded(scene.cells());
+    decode_residual(bytes, scene.segment(), levels, decoded);
+    return decoded;
+  };
+  EXPECT_EQ(decode({.step = 0}), decode({.step = 1}));
+  EXPECT_EQ(decode({.step = -5}), decode({.step = 1}));
+  EXPECT_EQ(decode({.step = 1 << 30}), decode({.step = 1 << 24}));
+  EXPECT_EQ(decode({.step = 1, .lattice_q32 = 1}), decode({.step = 1, .lattice_q32 = 1 << 16}));
+  EXPECT_EQ(decode({.step = 1, .lattice_q32 = ~std::uint64_t{0}}),
+            decode({.step = 1, .lattice_q32 = std::uint64_t{1} << 40}));
+}
+
+TEST(ResidualCoder, TablesOfPriorsFillTheModels) {
+  ResidualSymbols symbols(100);
+  ResidualPredictor predictor(8, 100);
+  EXPECT_TRUE(apply_priors(embedded_priors("residual"), symbols.models()));
+  EXPECT_TRUE(apply_weight_priors(embedded_priors("residual_mix"), symbols.weights()));
+  EXPECT_TRUE(apply_weight_priors(embedded_priors("residual_filter"), predictor.filter_weights()));
+  // The last of each is set, so none is too short.
+  std::vector<std::int32_t> weights(symbols.weights().size() - 1);
+  EXPECT_FALSE(apply_weight_priors(embedded_priors("residual_mix"), weights));
+  EXPECT_FALSE(apply_weight_priors(embedded_priors("residual_filter"),
+                                   predictor.filter_weights().first(16 * 11 - 1)));
+  EXPECT_FALSE(apply_priors(embedded_priors("residual"),
+                            symbols.models().first(symbols.models().size() - 1)));
+}
+
 TEST(ResidualCoder, ABitsWorthTradesErrorForBytes) {
   const Scene scene(32, 128, 2);
   const std::int32_t step = 1311;
   std::vector<std::int32_t> exact(scene.cells()), cheap(scene.cells());
-  const auto full = encode_residual(scene.segment(), scene.ranges, step, 0, exact);
-  const auto less = encode_residual(scene.segment(), scene.ranges, step, 44 * step, cheap);
+  const auto full = encode_residual(scene.segment(), scene.ranges, {step}, 0, exact);
+  const auto less = encode_residual(scene.segment(), scene.ranges, {step}, 44 * step, cheap);
   EXPECT_LT(less.size() * 10, full.size() * 9);
   std::int64_t exact_error = 0, cheap_error = 0;
   for (std::size_t i = 0; i < scene.cells(); ++i) {
@@ -93,7 +154,7 @@ TEST(ResidualCoder, NoiseCostsItsEntropy) {
   // outliers and for predicting from noisy neighbours.
   const Scene scene(64, 512, 3);
   std::vector<std::int32_t> decoded(scene.cells());
-  const auto bytes = encode_residual(scene.segment(), scene.ranges, 131, 0, decoded);
+  const auto bytes = encode_residual(scene.segment(), scene.ranges, {131}, 0, decoded);
   std::size_t coded = 0;
   for (std::size_t i = 0; i < scene.cells(); ++i) coded += scene.occupied[i] && scene.coded[i];
   const double bits = 8.0 * static_cast<double>(bytes.size()) / static_cast<double>(coded);
@@ -105,11 +166,11 @@ TEST(ResidualCoder, NothingCodedTakesNoBytes) {
   Scene scene(8, 16, 4);
   std::fill(scene.coded.begin(), scene.coded.end(), std::uint8_t{0});
   std::vector<std::int32_t> decoded(scene.cells());
-  EXPECT_TRUE(encode_residual(scene.segment(), scene.ranges, 100, 0, decoded).empty());
-  EXPECT_EQ(decode_residual({}, scene.segment(), 100, decoded), scene.rows);
+  EXPECT_TRUE(encode_residual(scene.segment(), scene.ranges, {100}, 0, decoded).empty());
+  EXPECT_EQ(decode_residual({}, scene.segment(), {100}, decoded), scene.rows);
 
-  EXPECT_TRUE(encode_residual({}, {}, 100, 0, {}).empty());
-  EXPECT_EQ(decode_residual({}, {}, 100, {}), 0u);
+  EXPECT_TRUE(encode_residual({}, {}, {100}, 0, {}).empty());
+  EXPECT_EQ(decode_residual({}, {}, {100}, {}), 0u);
 }
 
 TEST(ResidualCoder, ExtremeRangesAndFieldsSurvive) {
@@ -121,8 +182,8 @@ TEST(ResidualCoder, ExtremeRangesAndFieldsSurvive) {
   }
   for (const std::int32_t step : {1, 3, 1 << 24}) {
     std::vector<std::int32_t> told(scene.cells()), decoded(scene.cells());
-    const auto bytes = encode_residual(scene.segment(), scene.ranges, step, 0, told);
-    EXPECT_EQ(decode_residual(bytes, scene.segment(), step, decoded), scene.rows);
+    const auto bytes = encode_residual(scene.segment(), scene.ranges, {step}, 0, told);
+    EXPECT_EQ(decode_residual(bytes, scene.segment(), {step}, decoded), scene.rows);
     EXPECT_EQ(decoded, told);
     for (std::size_t i = 0; i < scene.cells(); ++i) {
       if (!scene.occupied[i] || !scene.coded[i]) continue;
@@ -134,11 +195,11 @@ TEST(ResidualCoder, ExtremeRangesAndFieldsSurvive) {
 TEST(ResidualCoder, ACutStreamGivesItsCompleteRows) {
   const Scene scene(24, 96, 7);
   std::vector<std::int32_t> told(scene.cells()), decoded(scene.cells());
-  const auto bytes = encode_residual(scene.segment(), scene.ranges, 66, 0, told);
+  const auto bytes = encode_residual(scene.segment(), scene.ranges, {66}, 0, told);
   std::size_t before = 0;
   for (std::size_t size = 0; size <= bytes.size(); size += bytes.size() / 16) {
     const std::size_t rows =
-        decode_residual(ByteSpan(bytes).first(size), scene.segment(), 66, decoded);
+        decode_residual(ByteSpan(bytes).first(size), scene.segment(), {66}, decoded);
     EXPECT_GE(rows, before);
     before = rows;
     for (std::size_t i = 0; i < rows * scene.columns; ++i) ASSERT_EQ(decoded[i], told[i]);
@@ -155,7 +216,7 @@ TEST(ResidualCoder, AnyBytesDecodeToRangesInsideTheLimits) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const auto bytes = random_bytes(static_cast<std::size_t>(seed * 40), seed);
     for (const std::int32_t step : {1, 500, 1 << 24}) {
-      EXPECT_LE(decode_residual(bytes, scene.segment(), step, decoded), scene.rows);
+      EXPECT_LE(decode_residual(bytes, scene.segment(), {step}, decoded), scene.rows);
       for (std::size_t i = 0; i < scene.cells(); ++i) {
         ASSERT_EQ(decoded[i] > 0, scene.occupied[i] != 0);
         ASSERT_LE(decoded[i], kMaxRangeQ16);
@@ -163,8 +224,8 @@ TEST(ResidualCoder, AnyBytesDecodeToRangesInsideTheLimits) {
     }
   }
   const std::vector<std::byte> ones(4000, std::byte{0xff});
-  EXPECT_LE(decode_residual(ones, scene.segment(), 1, decoded), scene.rows);
+  EXPECT_LE(decode_residual(ones, scene.segment(), {1}, decoded), scene.rows);
 }
 
 }  // namespace
-}  // namespace curlidar
+}  // namespace curlidar::compact
