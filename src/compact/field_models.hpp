@@ -124,8 +124,8 @@ struct FieldModels {
   std::vector<MixWeights<kFieldInputs>> weights{kFieldMixers};
 };
 
-inline constexpr std::int32_t kFieldMixRate = 6;
-inline constexpr std::uint32_t kFieldLimit = 255;
+inline constexpr std::int32_t kFieldMixRate = 10;
+inline constexpr std::uint32_t kFieldLimit = 127;
 
 /// Codes decisions with a range coder, or counts them exactly.
 template <class Coder>
