@@ -31,11 +31,6 @@ class PartSink {
   std::array<std::uint64_t, kFieldParts>& costs_;
 };
 
-void reset(FieldState& state) {
-  std::fill(state.surface.begin(), state.surface.end(), kNoSurface);
-  state.surfaces.clear();
-}
-
 }  // namespace
 
 EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& truth,
@@ -43,7 +38,7 @@ EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& tr
   EncodedField out;
   CostTable costs;
   for (std::uint32_t pass = 0; pass < passes; ++pass) {
-    reset(state);
+    state.clear();
     FieldModels models;
     if (pass == 0) costs = CostTable(models.models);
     out.roots.clear();
@@ -68,7 +63,14 @@ EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& tr
     }
     costs = CostTable(models.models);
   }
-  reset(state);
+  out.part_cost = {};
+  {
+    state.clear();
+    FieldModels models;
+    PartSink counter(models, out.part_cost);
+    for (Node& node : out.roots) code_node(counter, state, node);
+  }
+  state.clear();
   RangeEncoder encoder;
   FieldModels models;
   MixSink<RangeEncoder> sink(encoder, models);

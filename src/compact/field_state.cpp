@@ -60,6 +60,11 @@ FieldState::FieldState(const Geometry& g, const std::vector<std::uint8_t>& mask,
       surface(g.cells(), kNoSurface),
       depth_class(g.cells(), 0) {}
 
+void FieldState::clear() {
+  std::fill(surface.begin(), surface.end(), kNoSurface);
+  surfaces.clear();
+}
+
 const PatchShape& FieldState::shape(const Block& block) {
   const std::array<std::uint32_t, 3> key = {block.row, block.height, block.width};
   const auto found = shapes_.find(key);

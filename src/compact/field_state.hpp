@@ -67,6 +67,13 @@ class FieldState {
   Parents parents(const Block& block) const;
   /// Cells of the block that hold a return, in raster order.
   void cells_of(const Block& block, std::vector<std::uint32_t>& cells) const;
+  std::vector<std::uint32_t> cells_of(const Block& block) const {
+    std::vector<std::uint32_t> cells;
+    cells_of(block, cells);
+    return cells;
+  }
+  /// Forgets everything coded.
+  void clear();
 
  private:
   std::map<std::array<std::uint32_t, 3>, PatchShape> shapes_;

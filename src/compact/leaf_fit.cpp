@@ -26,11 +26,8 @@ std::array<double, kMaxFunctions> basis_at(const PatchFrame& frame, const Direct
           static_cast<double>(curved[2]) * kQ20};
 }
 
-using Matrix = std::array<std::array<double, kMaxFunctions>, kMaxFunctions>;
-using Vector = std::array<double, kMaxFunctions>;
-
 /// L of A = L L^T in the lower triangle, in place.
-void factorise(Matrix& a, std::uint32_t n) {
+void factorise(std::array<std::array<double, kMaxFunctions>, kMaxFunctions>& a, std::uint32_t n) {
   for (std::uint32_t i = 0; i < n; ++i) {
     for (std::uint32_t j = 0; j <= i; ++j) {
       double sum = a[i][j];
@@ -47,97 +44,121 @@ std::int32_t round_with_dead_zone(double x, double bias) {
   return x < 0 ? -steps : steps;
 }
 
-std::int64_t median_range(const LeafSamples& samples, const std::vector<std::uint32_t>& members) {
-  std::vector<std::int64_t> ranges;
-  ranges.reserve(members.size());
-  for (const std::uint32_t i : members) ranges.push_back(samples.ranges[i]);
-  const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
-  std::nth_element(ranges.begin(), middle, ranges.end());
-  return *middle;
-}
-
-struct Start {
-  Plane plane;
-  std::int64_t step_q40 = 0;
-  LayerCode layer;
-};
-
-Start start_of(const FieldState& state, const BlockContext& context, const PatchFrame& frame,
-               const LeafSamples& samples, const std::vector<std::uint32_t>& members,
-               std::uint32_t parent, std::uint32_t functions) {
-  Start start;
-  start.layer.parent = parent;
-  start.layer.functions = functions;
-  std::int64_t range = 0;
-  if (parent == 0) {
-    const std::int64_t step =
-        std::max<std::int64_t>(mul_shift(state.settings.step, frame.shape.norm, 30), 1);
-    const std::int64_t steps =
-        div_round(median_range(samples, members) - context.parents.range, step);
-    start.layer.range_steps =
-        static_cast<std::int32_t>(std::clamp<std::int64_t>(steps, -(1 << 23), 1 << 23));
-    range =
-        std::clamp(context.parents.range + start.layer.range_steps * step, kMinRange, kMaxRange);
-    start.plane = facing_plane(frame, range);
-  } else {
-    start.plane =
-        state.surfaces[static_cast<std::size_t>(context.parents.surface[parent - 1])].surface.plane;
-    const Direction& middle =
-        state.geometry.directions()[state.cell(context.block.row + context.block.height / 2,
-                                               context.block.column + context.block.width / 2)];
-    range = range_of(start.plane.at(middle));
-  }
-  start.step_q40 = coefficient_step((std::int64_t{1} << 46) / range, state.settings.step);
-  return start;
-}
-
 }  // namespace
 
 LeafSamples::LeafSamples(const FieldState& state, const PatchFrame& frame,
-                         const std::vector<std::int32_t>& truth, const Block& block) {
-  state.cells_of(block, cells);
+                         const std::vector<std::int32_t>& truth,
+                         std::vector<std::uint32_t> of_cells)
+    : cells(std::move(of_cells)) {
   for (const std::uint32_t cell : cells) {
     directions.push_back(state.geometry.directions()[cell]);
     ranges.push_back(truth[cell]);
     const double metres = static_cast<double>(truth[cell]) / kRangeUnit;
+    inverse.push_back(1.0 / metres);
     weights.push_back(metres * metres * (metres * metres));
     basis.push_back(basis_at(frame, directions.back()));
   }
 }
 
-std::optional<LayerCode> fit_layer(const FieldState& state, const BlockContext& context,
-                                   const PatchFrame& frame, const LeafSamples& samples,
-                                   const std::vector<std::uint32_t>& members,
-                                   const std::vector<double>& extra, std::uint32_t parent,
-                                   std::uint32_t functions) {
-  Start start = start_of(state, context, frame, samples, members, parent, functions);
-  const std::uint32_t first = parent == 0 ? 1 : 0;
-  if (kFunctions[functions] <= first) return start.layer;
-  const std::uint32_t n = kFunctions[functions] - first;
-  Matrix gram{};
-  Vector moment{};
+LayerFit::LayerFit(const FieldState& state, const BlockContext& context, const PatchFrame& frame,
+                   const LeafSamples& samples, const std::vector<std::uint32_t>& members,
+                   const std::vector<double>& extra)
+    : state_(state), context_(context), frame_(frame), samples_(samples), members_(members) {
   for (std::size_t m = 0; m < members.size(); ++m) {
     const std::uint32_t i = members[m];
     const double weight = extra.empty() ? samples.weights[i] : samples.weights[i] * extra[m];
-    const double target = static_cast<double>(kRangeUnit) / static_cast<double>(samples.ranges[i]);
-    const double error = target - static_cast<double>(start.plane.at(samples.directions[i])) * kQ30;
+    const double target = samples.inverse[i];
     const auto& basis = samples.basis[i];
-    for (std::uint32_t a = 0; a < n; ++a) {
-      const double weighted = weight * basis[a + first];
-      moment[a] += weighted * error;
-      for (std::uint32_t b = 0; b <= a; ++b) gram[a][b] += weighted * basis[b + first];
+    for (std::uint32_t a = 0; a < kMaxFunctions; ++a) {
+      const double weighted = weight * basis[a];
+      moment_[a] += weighted * target;
+      for (std::uint32_t b = 0; b <= a; ++b) gram_[a][b] += weighted * basis[b];
     }
   }
+  for (std::uint32_t a = 0; a < kMaxFunctions; ++a) {
+    for (std::uint32_t b = a + 1; b < kMaxFunctions; ++b) gram_[a][b] = gram_[b][a];
+  }
+}
+
+std::int64_t LayerFit::median_range() {
+  if (median_) return *median_;
+  std::vector<std::int64_t> ranges;
+  ranges.reserve(members_.size());
+  for (const std::uint32_t i : members_) ranges.push_back(samples_.ranges[i]);
+  const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
+  std::nth_element(ranges.begin(), middle, ranges.end());
+  median_ = *middle;
+  return *median_;
+}
+
+/// Coefficients of B0..B2 that make n . d.
+LayerFit::Vector LayerFit::in_basis(const Plane& plane) const {
+  const auto along = [&](const Axis& axis) {
+    return (static_cast<double>(plane.x) * static_cast<double>(axis.x) +
+            static_cast<double>(plane.y) * static_cast<double>(axis.y) +
+            static_cast<double>(plane.z) * static_cast<double>(axis.z)) *
+           (kQ30 * kQ30);
+  };
+  const auto& shape = frame_.shape;
+  const double norm = static_cast<double>(shape.norm) * kQ30;
+  const auto over = [&](double value, std::int64_t scale) {
+    return scale == 0 ? 0.0 : value / (norm * static_cast<double>(scale) / 16384);
+  };
+  return {along(frame_.c) / norm,
+          over(along(frame_.u), shape.scale_u),
+          over(along(frame_.v), shape.scale_v),
+          0,
+          0,
+          0};
+}
+
+LayerFit::Start LayerFit::start_of(std::uint32_t parent, std::uint32_t functions) {
+  Start start;
+  start.layer.parent = parent;
+  start.layer.functions = functions;
+  std::int64_t range = 0;
+  const std::int32_t unit = state_.settings.step;
+  if (parent == 0) {
+    const std::int64_t step = std::max<std::int64_t>(mul_shift(unit, frame_.shape.norm, 30), 1);
+    const std::int64_t steps = div_round(median_range() - context_.parents.range, step);
+    start.layer.range_steps =
+        static_cast<std::int32_t>(std::clamp<std::int64_t>(steps, -(1 << 23), 1 << 23));
+    range =
+        std::clamp(context_.parents.range + start.layer.range_steps * step, kMinRange, kMaxRange);
+    start.plane = facing_plane(frame_, range);
+  } else {
+    start.plane = state_.surfaces[static_cast<std::size_t>(context_.parents.surface[parent - 1])]
+                      .surface.plane;
+    const Block& block = context_.block;
+    const Direction& middle = state_.geometry.directions()[state_.cell(
+        block.row + block.height / 2, block.column + block.width / 2)];
+    range = range_of(start.plane.at(middle));
+  }
+  start.step_q40 = coefficient_step((std::int64_t{1} << 46) / range, unit);
+  return start;
+}
+
+std::optional<LayerCode> LayerFit::fit(std::uint32_t parent, std::uint32_t functions) {
+  Start start = start_of(parent, functions);
+  const std::uint32_t first = parent == 0 ? 1 : 0;
+  if (kFunctions[functions] <= first) return start.layer;
+  const std::uint32_t n = kFunctions[functions] - first;
+  const Vector base = in_basis(start.plane);
+  Matrix gram{};
+  Vector y{}, c{};
   double trace = 0;
-  for (std::uint32_t a = 0; a < n; ++a) trace += gram[a][a];
+  for (std::uint32_t a = 0; a < n; ++a) {
+    y[a] = moment_[a + first];
+    for (std::uint32_t b = 0; b < 3; ++b) y[a] -= gram_[a + first][b] * base[b];
+    for (std::uint32_t b = 0; b <= a; ++b) gram[a][b] = gram_[a + first][b + first];
+    trace += gram[a][a];
+  }
   trace = trace / n + 1e-12;
   for (std::uint32_t a = 0; a < n; ++a) gram[a][a] += trace * (a + first >= 3 ? 3.1e-3 : 1e-4);
   factorise(gram, n);
-  Vector y{}, c{};
   for (std::uint32_t a = 0; a < n; ++a) {
-    double sum = moment[a];
-    for (std::uint32_t k = 0; k < a; ++k) sum -= gram[a][k] * y[k];
-    y[a] = sum / gram[a][a];
+    for (std::uint32_t k = 0; k < a; ++k) y[a] -= gram[a][k] * y[k];
+    y[a] /= gram[a][a];
   }
   const double step = static_cast<double>(start.step_q40) * kQ40;
   for (std::uint32_t a = n; a-- > 0;) {

@@ -12,27 +12,56 @@
 
 namespace curlidar::compact {
 
-/// The returns of a block with what every fit needs of them.
+/// Returns, those of a block for one, with what every fit needs of them.
 struct LeafSamples {
   std::vector<std::uint32_t> cells;
   std::vector<Direction> directions;
   std::vector<std::int64_t> ranges;                      ///< Q16
+  std::vector<double> inverse;                           ///< 1 / r in 1/m
   std::vector<double> weights;                           ///< r^4 in metres
   std::vector<std::array<double, kMaxFunctions>> basis;  ///< B0..B5
 
   LeafSamples(const FieldState& state, const PatchFrame& frame,
-              const std::vector<std::int32_t>& truth, const Block& block);
+              const std::vector<std::int32_t>& truth, std::vector<std::uint32_t> of_cells);
   std::size_t size() const { return cells.size(); }
 };
 
-/// The layer with `functions` (place in kFunctions) that fits the `members` of the samples best
-/// in the square of range, each weighted by `extra` (empty = all 1), its coefficients rounded one
-/// after the other to the lattice of steps (Babai's nearest plane). `parent` = 0: a new surface at
-/// the members' median range. nullopt where no such layer exists.
-std::optional<LayerCode> fit_layer(const FieldState& state, const BlockContext& context,
-                                   const PatchFrame& frame, const LeafSamples& samples,
-                                   const std::vector<std::uint32_t>& members,
-                                   const std::vector<double>& extra, std::uint32_t parent,
-                                   std::uint32_t functions);
+/// Least squares of some of a leaf's samples: sums once over the samples, then any parent and any
+/// number of functions in constant time.
+class LayerFit {
+ public:
+  /// `extra`: a further weight of each member; empty = all 1. The context, frame and samples must
+  /// outlive the fit.
+  LayerFit(const FieldState& state, const BlockContext& context, const PatchFrame& frame,
+           const LeafSamples& samples, const std::vector<std::uint32_t>& members,
+           const std::vector<double>& extra);
+
+  /// The layer with `functions` (place in kFunctions) that fits the members best in the weighted
+  /// square of range, its coefficients rounded one after the other to the lattice of steps (Babai's
+  /// nearest plane). `parent` = 0: a new surface at the members' median range. nullopt where no
+  /// such layer exists.
+  std::optional<LayerCode> fit(std::uint32_t parent, std::uint32_t functions);
+
+ private:
+  using Vector = std::array<double, kMaxFunctions>;
+  using Matrix = std::array<Vector, kMaxFunctions>;
+  struct Start {
+    Plane plane;
+    std::int64_t step_q40 = 0;
+    LayerCode layer;
+  };
+  Start start_of(std::uint32_t parent, std::uint32_t functions);
+  std::int64_t median_range();
+  Vector in_basis(const Plane& plane) const;
+
+  const FieldState& state_;
+  const BlockContext& context_;
+  const PatchFrame& frame_;
+  const LeafSamples& samples_;
+  const std::vector<std::uint32_t>& members_;
+  Matrix gram_{};
+  Vector moment_{};  ///< of the inverse range
+  std::optional<std::int64_t> median_;
+};
 
 }  // namespace curlidar::compact

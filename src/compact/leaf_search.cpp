@@ -32,7 +32,7 @@ class LeafSearch {
         settings_(settings),
         context_(context),
         frame_(state.geometry, state.shape(context.block), context.block),
-        samples_(state, frame_, truth, context.block),
+        samples_(state, frame_, truth, state.cells_of(context.block)),
         sink_(costs) {}
 
   std::int64_t run(Node& node) {
@@ -154,10 +154,11 @@ void LeafSearch::try_one_layer() {
   const Members all = all_members();
   const std::uint32_t most = most_functions(all.size());
   LeafCode leaf;
+  LayerFit plain(state_, context_, frame_, samples_, all, {});
   for (std::uint32_t parent = 0; parent <= context_.parents.count; ++parent) {
     for (std::uint32_t functions = parent == 0 ? 1 : 0; functions <= most; ++functions) {
       if (parent > settings_.fitted_parents && functions > 0) break;
-      auto layer = fit_layer(state_, context_, frame_, samples_, all, {}, parent, functions);
+      auto layer = plain.fit(parent, functions);
       if (!layer) continue;
       const std::uint32_t passes = functions >= 2 ? settings_.reweighted_passes : 0;
       for (std::uint32_t pass = 0;; ++pass) {
@@ -173,7 +174,7 @@ void LeafSearch::try_one_layer() {
         }
         consider(leaf, {{*layer, std::move(ranges)}});
         if (pass >= passes) break;
-        auto next = fit_layer(state_, context_, frame_, samples_, all, extra, parent, functions);
+        auto next = LayerFit(state_, context_, frame_, samples_, all, extra).fit(parent, functions);
         if (!next) break;
         layer = next;
       }
@@ -186,11 +187,11 @@ std::optional<FittedLayer> LeafSearch::best_layer(const Members& members, std::u
   std::int64_t least = kNever;
   std::optional<FittedLayer> best;
   const std::uint32_t most = most_functions(members.size());
+  LayerFit fit(state_, context_, frame_, samples_, members, {});
   for (std::uint32_t parent = 0; parent <= context_.parents.count; ++parent) {
     for (std::uint32_t functions = parent == 0 ? 1 : 0; functions <= most; ++functions) {
       if (parent > settings_.fitted_parents && functions > 0) break;
-      const auto code =
-          fit_layer(state_, context_, frame_, samples_, members, {}, parent, functions);
+      const auto code = fit.fit(parent, functions);
       if (!code) continue;
       sink_.clear();
       LayerCode copy = *code;
