@@ -56,7 +56,7 @@ std::int64_t PartitionSearch::search(Node& node) {
   if (cells.size() > 1 && best > 4 * 256 * settings_.lambda) {
     for (const Split split : {Split::quad, Split::rows, Split::columns}) {
       if (!may_split(node.block, split, state_.settings)) continue;
-      if (split != Split::quad && !settings_.binary_splits &&
+      if (split != Split::quad && node.block.height >= settings_.binary_below &&
           may_split(node.block, Split::quad, state_.settings)) {
         continue;
       }

@@ -53,7 +53,7 @@ struct SearchSettings {
   std::uint32_t fitted_parents = 2;  ///< parents that corrections are fitted on
   std::uint32_t reweighted_passes = 2;
   std::uint32_t layer_passes = 3;
-  bool binary_splits = true;
+  std::uint32_t binary_below = 32;  ///< squares of fewer cells a side are also tried halved
   /// Costs in J of a cell's error under a residual layer, by error * 8 / residual_step: one table
   /// for each kind of leaf, from quiet to busy; none = no residual layer.
   std::vector<std::vector<std::int64_t>> residual_costs;
