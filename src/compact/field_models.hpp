@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "entropy/model.hpp"
@@ -74,7 +75,7 @@ inline constexpr std::array<DecisionKind, kDecisions> kDecisionKinds = {{
     {{12, 36, 24, 12}, 1, FieldPart::coefficients},                 // kCoefficientSign
     {{12 * 24, 24 * 18, 24 * 24, 24}, 2, FieldPart::coefficients},  // kCoefficientClass
     {{24, 48, 24 * 6, 24}, 1, FieldPart::coefficients},             // kCoefficientBits
-    {{162, 486, 729, 1024}, 9, FieldPart::labels},                  // kLabelFirst
+    {{162, 486, 729, 48}, 9, FieldPart::labels},                    // kLabelFirst
     {{81, 54, 81, 96}, 3, FieldPart::labels},                       // kLabelSecond
     {{24, 24, 3, 24}, 1, FieldPart::labels},                        // kLabelRest
 }};
@@ -120,8 +121,17 @@ inline Contexts contexts_of(Decision decision, const std::array<std::uint32_t, k
 
 /// What adapts while a segment is coded.
 struct FieldModels {
-  std::vector<BitModel> models{kFieldModels};
-  std::vector<MixWeights<kFieldInputs>> weights{kFieldMixers};
+  std::vector<BitModel> models;
+  std::vector<MixWeights<kFieldInputs>> weights;
+
+  /// As every segment starts: the tables field and field_mix of docs/format/priors.
+  FieldModels();
+  /// Without any knowledge, for training.
+  static FieldModels blank();
+
+ private:
+  FieldModels(std::vector<BitModel> m, std::vector<MixWeights<kFieldInputs>> w)
+      : models(std::move(m)), weights(std::move(w)) {}
 };
 
 inline constexpr std::int32_t kFieldMixRate = 10;

@@ -54,9 +54,9 @@ struct SearchSettings {
   std::uint32_t reweighted_passes = 2;
   std::uint32_t layer_passes = 3;
   std::uint32_t binary_below = 32;  ///< squares of fewer cells a side are also tried halved
-  /// Costs in J of a cell's error under a residual layer, by error * 8 / residual_step: one table
-  /// for each kind of leaf, from quiet to busy; none = no residual layer.
-  std::vector<std::vector<std::int64_t>> residual_costs;
+  /// Cost in J of a cell's error under a residual layer, by error * 8 / residual_step; empty = no
+  /// residual layer.
+  std::vector<std::int64_t> residual_costs;
   std::int32_t residual_step = 0;
 };
 

@@ -300,8 +300,7 @@ std::uint32_t code_label(Sink& sink, const LabelContext& c, std::uint32_t layers
   if (sink.bit(contexts_of(kLabelFirst,
                            {(c.pattern * 2 + known) * 3 + n,
                             ((c.gap > 5 ? 5 : c.gap) * 3 + c.nearer) * 27 + c.pattern,
-                            c.pattern * 27 + c.wide_pattern,
-                            ((c.run * 4 + c.rise) * 8 + c.gap) * 8 + (c.pattern % 3) * 2 + known},
+                            c.pattern * 27 + c.wide_pattern, (c.run * 4 + c.rise) * 3 + c.nearer},
                            n * 3 + w),
                label == c.first)) {
     return c.first;

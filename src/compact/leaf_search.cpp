@@ -65,13 +65,12 @@ class LeafSearch {
   std::int64_t error(std::size_t i, std::int32_t range) const {
     return std::abs(samples_.ranges[i] - range);
   }
-  /// Cost of a cell's error in J: plain (table 0), or with a residual layer on top.
-  std::int64_t error_cost(std::int64_t e, std::size_t table) const {
-    if (table == 0) return e * 256;
-    const std::vector<std::int64_t>& costs = settings_.residual_costs[table - 1];
+  /// Cost of a cell's error in J: plain, or with a residual layer on top.
+  std::int64_t error_cost(std::int64_t e, bool residual) const {
+    if (!residual) return e * 256;
     const std::int64_t at = e * 8 / settings_.residual_step;
-    const auto last = static_cast<std::int64_t>(costs.size()) - 1;
-    return costs[static_cast<std::size_t>(std::min(at, last))];
+    const auto last = static_cast<std::int64_t>(settings_.residual_costs.size()) - 1;
+    return settings_.residual_costs[static_cast<std::size_t>(std::min(at, last))];
   }
 
   Members all_members() const {
@@ -115,13 +114,14 @@ void LeafSearch::consider(const LeafCode& leaf, const std::vector<FittedLayer>& 
   const std::int64_t header = sink_.cost() * settings_.lambda;
   if (header >= best_) return;
   const bool has_residual = !settings_.residual_costs.empty();
-  for (std::size_t table = 0; table <= settings_.residual_costs.size(); ++table) {
+  for (const bool residual : {false, true}) {
+    if (residual && !has_residual) break;
     std::int64_t cost = header;
-    if (has_residual) cost += (table != 0 ? 384 : 192) * settings_.lambda;
+    if (has_residual) cost += (residual ? 384 : 192) * settings_.lambda;
     std::vector<std::uint8_t> labels;
     if (leaf.layers == 1) {
       for (std::size_t i = 0; i < samples_.size() && cost < best_; ++i) {
-        cost += error_cost(error(i, layers[0].ranges[i]), table);
+        cost += error_cost(error(i, layers[0].ranges[i]), residual);
       }
     } else {
       labels.resize(samples_.size());
@@ -135,7 +135,7 @@ void LeafSearch::consider(const LeafCode& leaf, const std::vector<FittedLayer>& 
           sink_.clear();
           code_label(sink_, context, leaf.layers, k);
           const std::int64_t j =
-              error_cost(error(i, ranges[k]), table) + sink_.cost() * settings_.lambda;
+              error_cost(error(i, ranges[k]), residual) + sink_.cost() * settings_.lambda;
           if (j >= least) continue;
           least = j;
           labels[i] = static_cast<std::uint8_t>(k);
