@@ -86,9 +86,10 @@ void code_segment(const ResidualSegment& segment, const ResidualLevels& asked,
   }
 }
 
-/// Everything without its residual.
-void start_from_field(const ResidualSegment& segment, std::span<std::int32_t> decoded) {
-  for (std::size_t cell = 0; cell < decoded.size(); ++cell) {
+/// The cells from `begin` on without their residuals.
+void start_from_field(const ResidualSegment& segment, std::size_t begin,
+                      std::span<std::int32_t> decoded) {
+  for (std::size_t cell = begin; cell < decoded.size(); ++cell) {
     decoded[cell] = segment.occupied[cell] ? clamp_range(segment.field[cell]) : 0;
   }
 }
@@ -117,7 +118,7 @@ std::vector<std::byte> encode_residual(const ResidualSegment& segment,
                                        std::span<const std::int32_t> ranges,
                                        const ResidualLevels& levels, std::uint32_t lambda,
                                        std::span<std::int32_t> decoded) {
-  start_from_field(segment, decoded);
+  start_from_field(segment, 0, decoded);
   RangeEncoder coder;
   code_segment(
       segment, levels, decoded,
@@ -129,20 +130,25 @@ std::vector<std::byte> encode_residual(const ResidualSegment& segment,
 }
 
 std::size_t decode_residual(ByteSpan bytes, const ResidualSegment& segment,
-                            const ResidualLevels& levels, std::span<std::int32_t> decoded) {
-  start_from_field(segment, decoded);
+                            const ResidualLevels& levels, std::span<std::int32_t> decoded,
+                            bool cut) {
+  start_from_field(segment, 0, decoded);
   RangeDecoder coder(bytes);
-  std::size_t complete = 0;
+  // The decoder reads ahead: a row is sure only while bytes are left, the last ones once the end
+  // is reached with nothing missing.
+  std::size_t sure = 0;
   code_segment(
       segment, levels, decoded,
       [&](std::size_t, const CellLevels&, ResidualSymbols& symbols) {
         return symbols.code(coder, 0);
       },
       [&](std::size_t row) {
-        if (!coder.exhausted()) complete = row + 1;
+        if (!coder.finished()) sure = row + 1;
         return !coder.exhausted();
       });
-  return complete;
+  if (!cut && !coder.exhausted()) return segment.rows;
+  start_from_field(segment, sure * segment.columns, decoded);
+  return sure;
 }
 
 }  // namespace curlidar::compact

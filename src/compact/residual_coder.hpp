@@ -44,10 +44,11 @@ std::vector<std::byte> encode_residual(const ResidualSegment& segment,
                                        const ResidualLevels& levels, std::uint32_t lambda,
                                        std::span<std::int32_t> decoded);
 
-/// Decodes what encode_residual wrote. Any bytes decode to something; of bytes that end too early,
-/// the rows before the returned one (in [0, rows]) are complete, and rows after that hold their
-/// field.
+/// Decodes what encode_residual wrote and returns how many rows are complete. Any bytes decode to
+/// something. Where bytes are missing, which `cut` says or decoding finds out, the rows that depend
+/// on them hold their field.
 std::size_t decode_residual(ByteSpan bytes, const ResidualSegment& segment,
-                            const ResidualLevels& levels, std::span<std::int32_t> decoded);
+                            const ResidualLevels& levels, std::span<std::int32_t> decoded,
+                            bool cut = false);
 
 }  // namespace curlidar::compact
