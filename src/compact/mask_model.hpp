@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Models of a mask's cells, and the one walk over them that encoder, decoder and trainer share.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "compact/mask_contexts.hpp"
+#include "compact/mask_window.hpp"
+#include "entropy/averaged_mix.hpp"
+#include "entropy/model.hpp"
+
+namespace curlidar::compact {
+
+/// How a mask learns, chosen by the encoder for each segment.
+struct MaskLearning {
+  bool priors;        ///< starts from the trained states; else from nothing
+  std::int32_t rate;  ///< of the weights, in 1/1024
+};
+inline constexpr std::array<MaskLearning, 4> kMaskLearning = {
+    {{true, 3}, {true, 10}, {false, 10}, {false, 3}}};
+
+inline constexpr std::uint32_t kMaskLimit = 255;
+
+/// What adapts while a mask is coded.
+class MaskModel {
+ public:
+  static constexpr std::size_t kModels = kMaskModels * kMaskContexts;
+  static constexpr std::size_t kWeightSets =
+      kMaskWeightSets[0] + kMaskWeightSets[1] + kMaskWeightSets[2];
+
+  /// Knows nothing yet: every model counts alike, no single cell does.
+  MaskModel();
+
+  std::span<BitModel> models() { return models_; }
+  std::span<WeightSet<kMaskInputs>> weights() { return weights_; }
+  std::span<const WeightSet<kMaskInputs>> weights() const { return weights_; }
+
+  /// Codes a cell.
+  template <class Coder>
+  bool code(Coder& coder, const MaskWindow& window, std::uint32_t scale, std::int32_t rate,
+            bool occupied);
+
+ private:
+  std::vector<BitModel> models_;  ///< those of the first model first
+  std::vector<WeightSet<kMaskInputs>> weights_;
+};
+
+template <class Coder>
+bool MaskModel::code(Coder& coder, const MaskWindow& window, std::uint32_t scale, std::int32_t rate,
+                     bool occupied) {
+  const MaskFeatures features(window);
+  const auto contexts = mask_contexts(window, features);
+  std::array<BitModel*, kMaskModels> models;
+  alignas(16) std::array<std::int16_t, kMaskInputs> inputs;
+  for (std::size_t m = 0; m < kMaskModels; ++m) {
+    models[m] = &models_[m * kMaskContexts + contexts[m]];
+    inputs[m] = static_cast<std::int16_t>(stretch(models[m]->probability));
+  }
+  const std::uint64_t cells = mask_cells(window);
+  for (std::size_t c = 0; c < kMaskCells; ++c) {
+    inputs[kMaskModels + c] = (cells >> c & 1) != 0 ? 128 : -128;
+  }
+  const auto sets = mask_weight_sets(window, features, scale);
+  const std::array<WeightSet<kMaskInputs>*, 3> chosen = {
+      &weights_[sets[0]], &weights_[kMaskWeightSets[0] + sets[1]],
+      &weights_[kMaskWeightSets[0] + kMaskWeightSets[1] + sets[2]]};
+
+  AveragedMix<kMaskInputs, 3> mix(inputs, chosen);
+  occupied = coder.code(mix.probability(), occupied);
+  mix.update(occupied, rate);
+  for (BitModel* model : models) {
+    observe(coder, *model, occupied);
+    model->update(occupied, kMaskLimit);
+  }
+  return occupied;
+}
+
+/// Codes rows of a mask from the top until `row_done(row)` says no. Cells are read or written.
+template <class Coder, class Cell, class RowDone>
+void code_mask(Coder& coder, MaskModel& model, const MaskShape& shape, std::int32_t rate,
+               Cell* cells, RowDone&& row_done) {
+  MaskScan scan(shape);
+  const std::uint32_t scale = mask_scale(shape.turn_columns);
+  for (std::size_t row = 0; row < shape.rows; ++row) {
+    scan.begin_row();
+    for (std::size_t column = 0; column < shape.columns; ++column, ++cells) {
+      scan.begin_cell();
+      const bool bit = !Coder::kDecodes && *cells != 0;
+      const bool occupied = model.code(coder, scan.window(), scale, rate, bit);
+      if constexpr (Coder::kDecodes) *cells = occupied;
+      scan.end_cell(occupied);
+    }
+    if (!row_done(row)) return;
+  }
+}
+
+}  // namespace curlidar::compact
