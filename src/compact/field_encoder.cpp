@@ -79,7 +79,7 @@ EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& tr
   return out;
 }
 
-DecodedField decode_field(FieldState& state, ByteSpan bytes) {
+DecodedField decode_field(FieldState& state, ByteSpan bytes, bool whole) {
   DecodedField out;
   RangeDecoder decoder(bytes);
   FieldModels models;
@@ -87,7 +87,7 @@ DecodedField decode_field(FieldState& state, ByteSpan bytes) {
   for (const Block& block : roots_of(state.geometry, state.settings)) {
     Node node{block, {}, {}, {}, {}};
     code_node(sink, state, node);
-    if (decoder.exhausted()) break;
+    if (whole ? decoder.exhausted() : decoder.past_end()) break;
     ++out.complete_roots;
     out.roots.push_back(std::move(node));
   }

@@ -23,11 +23,13 @@ EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& tr
                           const SearchSettings& settings, std::uint32_t passes);
 
 /// Reads a field into `state`. Never fails: `rows_of_roots` complete before the bytes ran out are
-/// counted. The nodes are kept for those who want to look at them.
+/// counted; `whole`: the bytes are all that was
+/// written; else their end is cut off. The nodes are kept for those who want to look at
+/// them.
 struct DecodedField {
   std::vector<Node> roots;
   std::size_t complete_roots = 0;
 };
-DecodedField decode_field(FieldState& state, ByteSpan bytes);
+DecodedField decode_field(FieldState& state, ByteSpan bytes, bool whole = true);
 
 }  // namespace curlidar::compact

@@ -18,6 +18,10 @@ inline constexpr std::uint32_t kLambdaPerMille = 170;
 struct Effort {
   SearchSettings search;
   std::uint32_t passes = 1;  ///< over the field, each with costs learnt by the one before
+  bool thorough_mask = false;
+  /// Of the residual layer: what a bit is worth, Q16 metres, and residual_cost_table.
+  std::int64_t residual_lambda = 0;
+  std::vector<std::int64_t> residual_costs;
   std::uint32_t mask_effort = 1;
 };
 
@@ -34,6 +38,7 @@ std::vector<std::int64_t> residual_cost_table(std::int32_t residual_step, std::i
 struct Steps {
   std::int32_t step = 0;
   std::int32_t residual_step = 0;
+  std::uint64_t lattice_q32 = 0;  ///< if not 0, in place of residual_step
   std::uint32_t root_log2 = 4;
   std::uint32_t smallest_leaf = 8;
 };

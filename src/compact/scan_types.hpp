@@ -56,7 +56,10 @@ struct ScanParameters {
   std::uint32_t rows = 0, columns = 0;
   std::int32_t step = 0;           ///< D of the field, Q16 metres, 1..kMaxStep
   std::int32_t residual_step = 0;  ///< of the residual layer, Q16 metres; 0 = there is none
-  std::uint32_t root_log2 = 4;     ///< roots of 2^root_log2 cells a side, 1..5
+  /// If not 0: residual levels are multiples of this many 2^-32 m, as ResidualLevels has them;
+  /// residual_step is then lattice_q32 / 2^16.
+  std::uint64_t lattice_q32 = 0;
+  std::uint32_t root_log2 = 4;  ///< roots of 2^root_log2 cells a side, 1..5
   std::uint32_t smallest_leaf = 8;
   std::uint32_t bands = 1, sectors = 1;  ///< of rows and of columns: bands * sectors segments
 
@@ -64,6 +67,9 @@ struct ScanParameters {
 };
 
 inline constexpr std::int32_t kMaxStep = 1 << 24;
+/// Of lattice_q32.
+inline constexpr std::uint64_t kLeastLattice = std::uint64_t{1} << 16;
+inline constexpr std::uint64_t kMostLattice = std::uint64_t{1} << 40;
 inline constexpr std::uint32_t kMaxSegments = 4096;
 
 /// A part of the image that is coded on its own: rows row .. row + rows - 1, likewise columns.

@@ -88,6 +88,9 @@ class RangeDecoder {
   /// Whether bits were decoded that depend on more than the given bytes and the four bytes of
   /// zeros that the encoder may leave out.
   bool exhausted() const { return position_ > bytes_.size() + 4; }
+  /// Whether bits were decoded that depend on more than the given bytes. Of a stream that was cut,
+  /// these may be wrong.
+  bool past_end() const { return position_ > bytes_.size(); }
   /// Whether nothing that the encoder would have written is left unread.
   bool finished() const { return position_ >= bytes_.size(); }
 
