@@ -11,7 +11,10 @@ namespace curlidar::compact {
 namespace {
 
 MaskModel start(const MaskLearning& learning) {
-  return learning.priors ? mask_priors() : MaskModel();
+  if (!learning.priors) return {};
+  MaskModel model = mask_priors();
+  model.doubt(learning.trust);
+  return model;
 }
 
 /// Codes which way of learning follows.

@@ -2,6 +2,7 @@
 // Models of a mask's cells, and the one walk over them that encoder, decoder and trainer share.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -17,13 +18,23 @@ namespace curlidar::compact {
 
 /// How a mask learns, chosen by the encoder for each segment.
 struct MaskLearning {
-  bool priors;        ///< starts from the trained states; else from nothing
-  std::int32_t rate;  ///< of the weights, in 1/1024
+  bool priors;          ///< starts from the trained states and weights; else from nothing
+  std::uint16_t trust;  ///< visits that a trained state counts for at most
+  std::int32_t rate;    ///< of the weights, in 1/1024
 };
 inline constexpr std::array<MaskLearning, 4> kMaskLearning = {
-    {{true, 3}, {true, 10}, {false, 10}, {false, 3}}};
+    {{true, 255, 5}, {true, 255, 14}, {true, 6, 10}, {false, 0, 10}}};
 
 inline constexpr std::uint32_t kMaskLimit = 255;
+
+/// What eight single cells say to the mix: half a nat for or against.
+inline constexpr auto kMaskEvidence = [] {
+  std::array<std::array<std::int16_t, 8>, 256> table{};
+  for (std::size_t bits = 0; bits < 256; ++bits) {
+    for (std::size_t c = 0; c < 8; ++c) table[bits][c] = (bits >> c & 1) != 0 ? 128 : -128;
+  }
+  return table;
+}();
 
 /// What adapts while a mask is coded.
 class MaskModel {
@@ -34,6 +45,11 @@ class MaskModel {
 
   /// Knows nothing yet: every model counts alike, no single cell does.
   MaskModel();
+
+  /// Lets every model count for at most so many visits.
+  void doubt(std::uint16_t visits) {
+    for (BitModel& model : models_) model.visits = std::min(model.visits, visits);
+  }
 
   std::span<BitModel> models() { return models_; }
   std::span<WeightSet<kMaskInputs>> weights() { return weights_; }
@@ -61,8 +77,8 @@ bool MaskModel::code(Coder& coder, const MaskWindow& window, std::uint32_t scale
     inputs[m] = static_cast<std::int16_t>(stretch(models[m]->probability));
   }
   const std::uint64_t cells = mask_cells(window);
-  for (std::size_t c = 0; c < kMaskCells; ++c) {
-    inputs[kMaskModels + c] = (cells >> c & 1) != 0 ? 128 : -128;
+  for (std::size_t c = 0; c < kMaskCells; c += 8) {
+    std::copy_n(kMaskEvidence[cells >> c & 0xff].begin(), 8, inputs.begin() + kMaskModels + c);
   }
   const auto sets = mask_weight_sets(window, features, scale);
   const std::array<WeightSet<kMaskInputs>*, 3> chosen = {

@@ -33,10 +33,10 @@ class WeightSet {
     return std::clamp((sum + 2048) >> 12, -kStretchLimit, kStretchLimit);
   }
 
-  /// Moves every weight by `pull` * input / 1024, in 1/2^20.
-  void learn(const std::array<std::int16_t, Inputs>& inputs, std::int32_t pull) {
+  /// Moves every weight by `pull` * input / 512, in 1/2^20.
+  void learn(const std::array<std::int16_t, Inputs>& inputs, std::int16_t pull) {
     for (std::size_t i = 0; i < Inputs; ++i) {
-      fine_[i] = std::clamp(fine_[i] + ((pull * inputs[i] + 512) >> 10), -kMaxWeight, kMaxWeight);
+      fine_[i] = std::clamp(fine_[i] + ((pull * inputs[i] + 256) >> 9), -kMaxWeight, kMaxWeight);
       coarse_[i] = static_cast<std::int16_t>((fine_[i] + 128) >> 8);
     }
   }
@@ -74,7 +74,7 @@ class AveragedMix {
       const std::int32_t error =
           (bit ? 65536 : 0) - static_cast<std::int32_t>(squash(predictions_[s]));
       if (error > -256 && error < 256) continue;
-      sets_[s]->learn(inputs_, (error * rate) >> 4);
+      sets_[s]->learn(inputs_, static_cast<std::int16_t>((error * rate) >> 5));
     }
   }
 

@@ -64,7 +64,7 @@ class Trainer {
     const Priors priors{fit_states(left_out), {}};
     typename Room::Model model = room_.fresh();
     std::vector<double> mean;
-    for (const std::int32_t rate : {4 * rate_, 2 * rate_, std::max(rate_ * 2 / 3, 1)}) {
+    for (const std::int32_t rate : {2 * rate_, rate_, std::max(rate_ / 2, 1)}) {
       mean.assign(room_.weights(model).size(), 0.0);
       std::size_t seen = 0;
       for (const std::size_t e : shuffled()) {

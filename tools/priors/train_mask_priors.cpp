@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -82,8 +83,9 @@ void report(const training::Trainer<MaskRoom>& trainer, const Examples& scans,
     fmt::print("{:<28} {:>3} x {:<4} {:>6} occupied, bits each:", scan.name, scan.shape.rows,
                scan.shape.columns, scan.count);
     for (const auto& way : ways) {
-      const double bits =
-          trainer.bits(scan, way.priors ? trainer.start(priors) : compact::MaskModel(), way.rate);
+      compact::MaskModel model = way.priors ? trainer.start(priors) : compact::MaskModel();
+      model.doubt(way.trust);
+      const double bits = trainer.bits(scan, std::move(model), way.rate);
       fmt::print(" {:.4f}", bits / static_cast<double>(scan.count));
     }
     fmt::print("\n");
