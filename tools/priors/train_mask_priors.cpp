@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // train_mask_priors LIST [FOLDER]: reads lines "GROUP PATH" of organised clouds (one sensor or
-// drive a group), says what masks cost with priors that their own group did not teach, and writes
-// mask.txt and mask_mix.txt, taught by all groups but "test", into FOLDER.
+// drive a group), says what masks cost with priors that their own group did not teach (one column
+// for each way of learning), and writes mask.txt and mask_mix.txt, taught by all groups but "test",
+// into FOLDER.
+//
+// Those of docs/format/priors come from `curlidar project --rows rings` of KITTI (odometry 00, raw,
+// object), HDL-32E, Ouster OS-0, OS-1 and OS-2, XT16, and a room scanned by a tilting laser (181
+// uniform rows): 512 and 1024 columns from 5 m to p90, 1024 and, but for KITTI odometry 00 and
+// Ouster, 2048 columns from 1 m on. Changing them changes the format.
 #include <cstdio>
 #include <fstream>
 #include <iostream>
