@@ -160,9 +160,9 @@ int for_each_job(const CommonOptions& common, const std::vector<Job>& jobs, cons
   return code;
 }
 
-DecodedScan load_curl(const std::string& path) {
+DecodedScan load_curl(const std::string& path, const DecodeOptions& options) {
   const std::vector<std::byte> bytes = need(read_file(path));
-  return need(decode(bytes));
+  return need(decode(bytes, options));
 }
 
 Cloud load_cloud(const std::string& path, const std::optional<CloudFormat>& format,

@@ -50,7 +50,7 @@ int for_each_job(const CommonOptions& common, const std::vector<Job>& jobs, cons
 Cloud load_cloud(const std::string& path, const std::optional<CloudFormat>& format,
                  const ReconstructSettings& reconstruct_settings = {});
 /// A .curl file.
-DecodedScan load_curl(const std::string& path);
+DecodedScan load_curl(const std::string& path, const DecodeOptions& options = {});
 
 /// Writes a cloud; "-" without a format is PCD. `hint` is what to do when the format cannot hold
 /// it.

@@ -94,12 +94,21 @@ void need(Status status) {
   if (!status) throw Failure(status.error(), exit_code_of(status.error().code));
 }
 
+void need_option(Status status) {
+  if (!status) throw Failure(status.error(), kExitUsage);
+}
+
 void usage_error(std::string message) {
   throw Failure({ErrorCode::invalid_argument, std::move(message)}, kExitUsage);
 }
 
 void print_error(std::string_view message) {
   const std::string line = fmt::format("curlidar: error: {}\n", message);
+  std::fputs(line.c_str(), stderr);
+}
+
+void print_warning(std::string_view message) {
+  const std::string line = fmt::format("curlidar: warning: {}\n", message);
   std::fputs(line.c_str(), stderr);
 }
 

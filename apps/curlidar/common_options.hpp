@@ -83,10 +83,13 @@ T need_option(Result<T> result) {
   if (!result) throw Failure(result.error(), kExitUsage);
   return *std::move(result);
 }
+void need_option(Status status);
 [[noreturn]] void usage_error(std::string message);
 
 /// One line "curlidar: error: ..." on stderr.
 void print_error(std::string_view message);
+/// One line "curlidar: warning: ..." on stderr.
+void print_warning(std::string_view message);
 
 /// "2x4" or "2" (both the same). Whole numbers only if T is one. Values above zero.
 template <class T>

@@ -18,6 +18,11 @@ std::string joined(const std::vector<std::string>& names) {
 
 }  // namespace
 
+CLI::Option* PaperOptions::paper_only(CLI::Option* option) {
+  paper_only_.push_back(option);
+  return option;
+}
+
 template <class T>
 CLI::Option* PaperOptions::add_number(CLI::App& app, const std::string& name,
                                       T& (*field)(PaperSettings&), const char* help) {
@@ -25,15 +30,15 @@ CLI::Option* PaperOptions::add_number(CLI::App& app, const std::string& name,
   const auto store = [this, field](const T& value) {
     overrides_.push_back([field, value](PaperSettings& settings) { field(settings) = value; });
   };
-  return app.add_option_function<T>(name, store, help)
+  return paper_only(app.add_option_function<T>(name, store, help))
       ->default_str(fmt::format("{}", field(defaults)));
 }
 
 void PaperOptions::add_grid(CLI::App& app, const std::string& prefix) {
-  app.add_option("--preset", preset_,
-                 "Parameters for a kind of scan: " + joined(paper_preset_names()) +
-                     " or auto (indoor if most returns are nearer than 5 m, else outdoor). "
-                     "Defaults below are those of outdoor")
+  paper_only(app.add_option("--preset", preset_,
+                            "Parameters for a kind of scan: " + joined(paper_preset_names()) +
+                                " or auto (indoor if most returns are nearer than 5 m, else "
+                                "outdoor). Defaults below are those of outdoor"))
       ->capture_default_str()
       ->group(kGrid);
   app.add_option("--sensor", sensor_, kSensorHelp)->capture_default_str()->group(kGrid);
@@ -42,33 +47,45 @@ void PaperOptions::add_grid(CLI::App& app, const std::string& prefix) {
          rows,
          [this, rows](const std::string& text) {
            const RowChoice choice = parse_rows(text, rows.c_str());
+           uniform_rows_ = choice.rule != RowRule::rings;
            overrides_.push_back([choice](PaperSettings& s) {
              s.row_rule = choice.rule;
              s.rows = choice.rows;
            });
          },
          "Rows of the grid: uniform (one for each ring, evenly spaced), rings (at the true "
-         "elevations) or a number of uniform rows")
+         "elevations) or a number of uniform rows; compact: always rings")
       ->default_str("uniform")
       ->group(kGrid);
-  add_number<std::uint32_t>(
-      app, "--" + prefix + "cols", [](PaperSettings & s) -> auto& { return s.columns; },
-      "Columns of the grid, N_h")
+  app.add_option_function<std::uint32_t>(
+         "--" + prefix + "cols",
+         [this](const std::uint32_t& columns) {
+           compact_.columns = columns;
+           overrides_.push_back([columns](PaperSettings& s) { s.columns = columns; });
+         },
+         "Columns of the grid, N_h; compact: an organised cloud's own, else 2048")
+      ->default_str(fmt::format("{}", PaperSettings{}.columns))
       ->check(number_in(4, 65536))
       ->group(kGrid);
-  add_number<double>(
-      app, "--min-range", [](PaperSettings & s) -> auto& { return s.min_range_m; },
-      "Drop returns nearer than this, metres")
+  app.add_option_function<double>(
+         "--min-range",
+         [this](const double& metres) {
+           compact_.min_range_m = metres;
+           overrides_.push_back([metres](PaperSettings& s) { s.min_range_m = metres; });
+         },
+         "Drop returns nearer than this, metres; compact: 0")
+      ->default_str(fmt::format("{}", PaperSettings{}.min_range_m))
       ->check(number_in(0.0, 1e6))
       ->group(kGrid);
   app.add_option_function<std::string>(
          "--max-range",
          [this](const std::string& text) {
            const RangeLimit limit = parse_range_limit(text, "--max-range");
+           compact_.max_range = limit;
            overrides_.push_back([limit](PaperSettings& s) { s.max_range = limit; });
          },
          "Drop returns farther than this: metres, p90 for the 90th percentile of range, or max "
-         "for the sensor's own limit")
+         "for the sensor's own limit; compact: max")
       ->default_str("p90")
       ->group(kGrid);
   add_number<double>(
@@ -83,16 +100,16 @@ void PaperOptions::add_grid(CLI::App& app, const std::string& prefix) {
 }
 
 void PaperOptions::add_upsample(CLI::App& app) {
-  app.add_option_function<std::string>(
-         "--upsample",
-         [this](const std::string& text) {
-           const auto factors = parse_whole_factors(text, "--upsample");
-           overrides_.push_back([factors](PaperSettings& s) {
-             s.upsample_rows = factors.rows;
-             s.upsample_columns = factors.columns;
-           });
-         },
-         "Virtual LiDAR, S_row x S_col times denser (paper-1to1: 1x1)")
+  paper_only(app.add_option_function<std::string>(
+                 "--upsample",
+                 [this](const std::string& text) {
+                   const auto factors = parse_whole_factors(text, "--upsample");
+                   overrides_.push_back([factors](PaperSettings& s) {
+                     s.upsample_rows = factors.rows;
+                     s.upsample_columns = factors.columns;
+                   });
+                 },
+                 "Virtual LiDAR, S_row x S_col times denser (paper-1to1: 1x1)"))
       ->type_name("RxC")
       ->default_str("2x2")
       ->group(kUpsampling);
@@ -123,10 +140,12 @@ void PaperOptions::add_cliffs(CLI::App& app) {
       ->group(kUpsampling);
 }
 
-void PaperOptions::add_fit(CLI::App& app) {
+void PaperOptions::add_fit(CLI::App& app, const char* profile) {
+  profile_ = profile;
   app.add_option("--profile", profile_,
-                 "paper (CURL, RSS 2022), paper-1to1 (tuned for 1:1 reconstruction) or "
-                 "paper-global (the paper's baseline: one expansion of the whole scan)")
+                 "compact (smallest), paper (CURL, RSS 2022), paper-1to1 (tuned for 1:1 "
+                 "reconstruction) or paper-global (the paper's baseline: one expansion of the "
+                 "whole scan)")
       ->capture_default_str();
   app.add_option("--attributes", attributes_,
                  "Attributes to keep: all, none, or names such as intensity,ring")
@@ -182,9 +201,27 @@ std::string PaperOptions::preset(const Cloud& cloud) const {
   return preset_ == "auto" ? suggest_preset(cloud) : preset_;
 }
 
+Profile PaperOptions::profile() const {
+  return need_option(profile_by_name(profile_));
+}
+
+void PaperOptions::refuse_paper_options() const {
+  for (const CLI::Option* option : paper_only_) {
+    if (option->count() == 0) continue;
+    usage_error(fmt::format("{} means nothing to the compact profile: add --profile paper",
+                            option->get_name()));
+  }
+  if (uniform_rows_) {
+    usage_error(
+        "the compact profile codes the true rings: leave --rows out, or add --profile paper");
+  }
+}
+
 EncodeSettings PaperOptions::settings(const Cloud& cloud, std::size_t threads) const {
   EncodeSettings settings;
-  settings.profile = need_option(profile_by_name(profile_));
+  settings.profile = profile();
+  if (settings.profile == Profile::compact) refuse_paper_options();
+  settings.compact = compact_;
   settings.paper = for_profile(need_option(paper_preset(preset(cloud))), settings.profile);
   for (const Override& apply : overrides_) apply(settings.paper);
   settings.sensor = parse_sensor(sensor_);

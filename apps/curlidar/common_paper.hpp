@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's parameter table as command-line options.
+// The paper's parameter table as command-line options, with what every profile shares.
 #pragma once
 
 #include <cstddef>
@@ -23,18 +23,23 @@ class PaperOptions {
   void add_upsample(CLI::App& app);
   /// Cliffs and refused triangles.
   void add_cliffs(CLI::App& app);
-  /// --profile, --attributes and everything about patches and degrees.
-  void add_fit(CLI::App& app);
+  /// --profile (by default `profile`), --attributes and everything about patches and degrees.
+  void add_fit(CLI::App& app, const char* profile);
 
-  /// The settings for a scan. Failure(kExitUsage) if a value makes no sense.
+  /// The settings for a scan. Failure(kExitUsage) if a value makes no sense, or if an option of the
+  /// paper's profiles is given with another.
   EncodeSettings settings(const Cloud& cloud, std::size_t threads) const;
   /// The same failures before any scan is read.
   void check() const { settings({}, 1); }
+  Profile profile() const;
   /// Name of the preset that settings() takes for a scan.
   std::string preset(const Cloud& cloud) const;
 
  private:
   using Override = std::function<void(PaperSettings&)>;
+  /// Notes that an option means nothing to Profile::compact.
+  CLI::Option* paper_only(CLI::Option* option);
+  void refuse_paper_options() const;
   /// A number of the table: its default is read from, and its value written to, `field`.
   template <class T>
   CLI::Option* add_number(CLI::App& app, const std::string& name, T& (*field)(PaperSettings&),
@@ -42,6 +47,9 @@ class PaperOptions {
 
   std::string profile_ = "paper", preset_ = "auto", sensor_ = "auto", attributes_ = "all";
   std::vector<Override> overrides_;
+  std::vector<const CLI::Option*> paper_only_;
+  bool uniform_rows_ = false;  ///< --rows asked for something else than rings
+  CompactSettings compact_;    ///< what shared options say
 };
 
 }  // namespace curlidar::app

@@ -71,7 +71,7 @@ Reconstruction reconstruct_and_measure(const DecodedScan& scan, const Cloud& in_
   result.decode_ms = ms_since(start);
   result.to_scan = need(compare(result.cloud, in_range, threads));
   const Cloud truth =
-      need(simulate_truth(scene, scan.field->lattice(), row_factor, 1, scan.settings.min_range_m,
+      need(simulate_truth(scene, scan.field->lattice(), row_factor, 1, scan.paper->min_range_m,
                           scan.sensor.max_range_m, threads));
   result.range_error = range_errors(result.cloud, truth);
   return result;
@@ -165,6 +165,7 @@ int run(const Options& options) {
 
   next("encode");
   EncodeSettings encode_settings;
+  encode_settings.profile = Profile::paper;
   encode_settings.sensor = sensor;
   encode_settings.paper.row_rule = RowRule::rings;  // evenly spaced rows would miss some of the rings
   encode_settings.attributes = std::vector<std::string>{};
@@ -175,9 +176,9 @@ int run(const Options& options) {
   need(write_file(place("scan.curl"), encoded.bytes));
 
   const DecodedScan scan = need(decode(encoded.bytes));
-  const double coded_min_m = scan.settings.min_range_m;
+  const double coded_min_m = scan.paper->min_range_m;
   const double coded_max_m =
-      scan.settings.max_range.metres > 0 ? scan.settings.max_range.metres : sensor.max_range_m;
+      scan.paper->max_range.metres > 0 ? scan.paper->max_range.metres : sensor.max_range_m;
   const Cloud in_range = within_range(raw, coded_min_m, coded_max_m);
   std::vector<Reconstruction> all;
   for (const double factor : {1.0, 8.0}) {

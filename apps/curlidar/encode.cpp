@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "common_compact.hpp"
 #include "common_inputs.hpp"
 #include "common_paper.hpp"
 
@@ -14,16 +15,18 @@ namespace curlidar::app {
 namespace {
 
 constexpr const char* kFooter = R"(Examples:
-  curlidar encode scan.pcd                        makes scan.curl beside it
-  curlidar encode scans/*.bin -o out/             many scans
-  curlidar encode scan.bin --sensor hdl64e-kitti --attributes none
-  curlidar encode room.pcd --preset indoor --upsample 1x1 -o room.curl
+  curlidar encode scan.pcd                        makes scan.curl beside it, 5 cm mean error
+  curlidar encode scans/*.bin -o out/ --error 0.02
+  curlidar encode scan.bin --sensor hdl64e-kitti --attributes none --bits 1 --effort 9
   curlidar encode - --format pcd <scan.pcd >scan.curl
+  curlidar encode room.pcd --profile paper --preset indoor --upsample 1x1 -o room.curl
+With --attributes none the file holds geometry only, and no metadata but those of --meta.
 The order is: preset, then what the profile changes, then the options given here.)";
 
 struct Options {
   CommonOptions common;
   PaperOptions paper;
+  CompactOptions compact;
   std::vector<std::string> inputs, metadata;
   std::string output, format;
 };
@@ -40,33 +43,52 @@ std::map<std::string, std::string> parse_metadata(const std::vector<std::string>
   return metadata;
 }
 
-Json report_json(const EncodeReport& report, const EncodeSettings& settings,
-                 const std::string& preset) {
-  Json stages = Json::object();
-  for (const StageTime& stage : report.stages_ms) stages[stage.stage] = stage.ms;
+Json paper_json(const EncodeReport& report, const std::string& preset) {
   Json degrees = Json::object();
   for (std::size_t d = 0; d < report.degrees.size(); ++d) {
     if (report.degrees[d] != 0) degrees[std::to_string(d)] = report.degrees[d];
   }
-  const ProjectionCounts& counts = report.projection;
-  return {{"profile", to_string(settings.profile)},
-          {"preset", preset},
-          {"sensor", report.sensor},
-          {"points_in", report.points_in},
-          {"points_coded", report.points_coded},
-          {"bytes", report.bytes},
-          {"bits_per_point", report.bits_per_point},
+  return {{"preset", preset},
           {"cp_paper_percent", report.cp_paper_percent},
           {"coefficients", report.coefficients},
           {"patches", report.patches},
           {"degrees", degrees},
-          {"points_upsampled", report.points_upsampled},
-          {"dropped",
-           {{"outliers", counts.outliers},
-            {"out_of_range", counts.out_of_range},
-            {"out_of_fov", counts.out_of_fov},
-            {"collided", counts.collided}}},
-          {"stages_ms", stages}};
+          {"points_upsampled", report.points_upsampled}};
+}
+
+Json compact_json(const CompactReport& c) {
+  return {{"mean_error_m", c.mean_error_m},
+          {"rms_error_m", c.rms_error_m},
+          {"max_error_m", c.max_error_m},
+          {"error_nn_m", c.error_nn_m ? Json(*c.error_nn_m) : Json()},
+          {"bits_per_point_coded", c.bits_per_point_coded},
+          {"step_m", c.step_m},
+          {"residual_step_m", c.residual_step_m},
+          {"rows", c.rows},
+          {"columns", c.columns},
+          {"segments", c.segments},
+          {"cell_centres", c.cell_centres},
+          {"heights", c.heights},
+          {"range_offsets", c.range_offsets},
+          {"encodings", c.encodings},
+          {"breakdown", breakdown_json(c.breakdown)},
+          {"statistics", statistics_json(c.statistics)}};
+}
+
+Json report_json(const EncodeReport& report, Profile profile, const std::string& preset) {
+  Json stages = Json::object();
+  for (const StageTime& stage : report.stages_ms) stages[stage.stage] = stage.ms;
+  const ProjectionCounts& counts = report.projection;
+  Json json = {{"profile", to_string(profile)}, {"sensor", report.sensor},
+               {"points_in", report.points_in}, {"points_coded", report.points_coded},
+               {"bytes", report.bytes},         {"bits_per_point", report.bits_per_point}};
+  json.update(report.compact ? compact_json(*report.compact) : paper_json(report, preset));
+  json["dropped"] = {{"outliers", counts.outliers},
+                     {"out_of_range", counts.out_of_range},
+                     {"out_of_fov", counts.out_of_fov},
+                     {"collided", counts.collided}};
+  json["stages_ms"] = stages;
+  return json;
 }
 
 std::string drop_text(std::size_t count, const EncodeReport& report, const char* reason) {
@@ -75,33 +97,63 @@ std::string drop_text(std::size_t count, const EncodeReport& report, const char*
   return fmt::format("{:>10}  {:4.1f} %  {}\n", count_text(count), share, reason);
 }
 
-std::string report_text(const Job& job, const EncodeReport& report, const EncodeSettings& settings,
+std::string paper_text(const EncodeReport& report, const std::string& preset) {
+  Table table;
+  table.add({"preset", preset});
+  table.add({"CP of the paper", fmt::format("{:.2f} %", report.cp_paper_percent)});
+  table.add({"patches", count_text(report.patches)});
+  table.add({"coefficients", count_text(report.coefficients)});
+  return table.text();
+}
+
+std::string compact_text(const EncodeReport& report) {
+  const CompactReport& c = *report.compact;
+  Table table;
+  table.add({"mean error", length_text(c.mean_error_m)});
+  table.add({"rms error", length_text(c.rms_error_m)});
+  table.add({"largest error", length_text(c.max_error_m)});
+  if (c.error_nn_m) table.add({"nearest-neighbour error", length_text(*c.error_nn_m)});
+  table.add({"grid", fmt::format("{} rings x {}{}", c.rows, c.columns,
+                                 c.cell_centres ? ", the input's own" : "")});
+  table.add(
+      {"steps",
+       fmt::format("{}{}", length_text(c.step_m),
+                   c.residual_step_m > 0 ? ", residual " + length_text(c.residual_step_m) : "")});
+  table.add({"segments", count_text(c.segments)});
+  table.add({"encodings tried", count_text(c.encodings)});
+  return table.text() + "Geometry:\n" + breakdown_text(c.breakdown, report.points_coded);
+}
+
+std::string dropped_text(const EncodeReport& report) {
+  const ProjectionCounts& counts = report.projection;
+  std::string text = "Returns that are not coded one for one:\n";
+  text += drop_text(counts.out_of_range, report, "out of range");
+  text += drop_text(counts.out_of_fov, report, "outside the nominal field of view");
+  if (!report.compact) text += drop_text(counts.outliers, report, "outliers (too few neighbours)");
+  text += drop_text(counts.collided, report, "share a cell with a return nearer its centre");
+  if (counts.kept > report.points_coded) {
+    text += drop_text(counts.kept - report.points_coded, report, "not explained by the fit");
+  }
+  if (!report.compact && counts.out_of_range * 2 > report.points_in) {
+    text +=
+        "Most returns are out of range: --preset indoor, or --min-range and --max-range, keep "
+        "them.\n";
+  }
+  return text;
+}
+
+std::string report_text(const Job& job, const EncodeReport& report, Profile profile,
                         const std::string& preset) {
   Table table;
-  table.add({"profile", fmt::format("{}, {}", to_string(settings.profile), preset)});
+  table.add({"profile", to_string(profile)});
   table.add({"sensor", report.sensor});
   table.add({"points in", count_text(report.points_in)});
   table.add({"points coded", count_text(report.points_coded)});
   table.add({"size", bytes_text(report.bytes)});
   table.add({"bits per point in", fmt::format("{:.2f}", report.bits_per_point)});
-  table.add({"CP of the paper", fmt::format("{:.2f} %", report.cp_paper_percent)});
-  table.add({"patches", count_text(report.patches)});
-  table.add({"coefficients", count_text(report.coefficients)});
   std::string text = fmt::format("{} -> {}\n{}", job.input, job.output, table.text());
-  const ProjectionCounts& counts = report.projection;
-  text += "Returns that are not coded one for one:\n";
-  text += drop_text(counts.out_of_range, report, "out of range");
-  text += drop_text(counts.out_of_fov, report, "outside the nominal field of view");
-  text += drop_text(counts.outliers, report, "outliers (too few neighbours)");
-  text += drop_text(counts.collided, report, "share a cell with a return nearer its centre");
-  if (counts.kept > report.points_coded) {
-    text += drop_text(counts.kept - report.points_coded, report, "not explained by the fit");
-  }
-  if (counts.out_of_range * 2 > report.points_in) {
-    text +=
-        "Most returns are out of range: --preset indoor, or --min-range and --max-range, keep "
-        "them.\n";
-  }
+  text += report.compact ? compact_text(report) : paper_text(report, preset);
+  text += dropped_text(report);
   Table stages;
   double total = 0;
   for (const StageTime& stage : report.stages_ms) {
@@ -117,8 +169,26 @@ std::string report_line(const Job& job, const EncodeReport& report) {
                      count_text(report.points_in), bytes_text(report.bytes), report.bits_per_point);
 }
 
+EncodeSettings settings_for(const Options& options, const Cloud& cloud) {
+  EncodeSettings settings = options.paper.settings(cloud, options.common.threads);
+  if (settings.profile == Profile::compact) {
+    options.compact.apply(settings.compact);
+    need_option(validate(settings.compact));
+  } else if (!options.compact.first_given().empty()) {
+    usage_error(fmt::format("{} belongs to the compact profile: leave --profile {} out",
+                            options.compact.first_given(), to_string(settings.profile)));
+  }
+  return settings;
+}
+
+/// A geometry-only file of the compact profile holds no metadata that nobody asked for.
+bool keeps_metadata(const EncodeSettings& settings) {
+  return settings.profile != Profile::compact || !settings.attributes ||
+         !settings.attributes->empty();
+}
+
 int run(const Options& options) {
-  options.paper.check();
+  settings_for(options, {});  // wrong usage shows before a scan is read
   const auto metadata = parse_metadata(options.metadata);
   const auto format = parse_format(options.format);
   for (const std::string& input : options.inputs) {
@@ -132,16 +202,18 @@ int run(const Options& options) {
     ReadOptions read_options;
     read_options.format = format;
     Cloud cloud = need(read_cloud(job.input, read_options));
-    if (job.input != "-") {
+    const EncodeSettings settings = settings_for(options, cloud);
+    if (!keeps_metadata(settings)) {
+      cloud.metadata.clear();
+    } else if (job.input != "-") {
       cloud.metadata["source"] = std::filesystem::path(job.input).filename().string();
     }
     for (const auto& [key, value] : metadata) cloud.metadata[key] = value;
-    const EncodeSettings settings = options.paper.settings(cloud, options.common.threads);
     const std::string preset = options.paper.preset(cloud);
     const Encoded encoded = need(encode(cloud, settings, progress));
     need(write_file(job.output, encoded.bytes));
-    return Outcome{report_json(encoded.report, settings, preset),
-                   jobs.size() == 1 ? report_text(job, encoded.report, settings, preset)
+    return Outcome{report_json(encoded.report, settings.profile, preset),
+                   jobs.size() == 1 ? report_text(job, encoded.report, settings.profile, preset)
                                     : report_line(job, encoded.report)};
   });
 }
@@ -163,7 +235,8 @@ Command add_encode(CLI::App& root) {
   options->paper.add_grid(*app);
   options->paper.add_upsample(*app);
   options->paper.add_cliffs(*app);
-  options->paper.add_fit(*app);
+  options->paper.add_fit(*app, "compact");
+  options->compact.add(*app);
   add_common_options(*app, options->common);
   return {app, [options] { return run(*options); }};
 }

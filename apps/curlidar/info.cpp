@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "commands.hpp"
+#include "common_compact.hpp"
 #include "common_inputs.hpp"
 
 namespace curlidar::app {
@@ -162,16 +164,92 @@ Json parameters_json(const PaperSettings& s) {
           {"global_reject_m", s.global_reject_m}};
 }
 
-Outcome describe_curl(const Job& job, std::span<const std::byte> bytes) {
-  const DecodedScan scan = need(decode(bytes));
-  Json chunks = Json::array();
-  Table chunk_table;
-  for (const ChunkInfo& chunk : need(list_chunks(bytes))) {
+/// What a profile alone has to say: a JSON part and lines of text.
+struct Details {
+  Json json = Json::object();
+  std::string text;
+};
+
+std::string parameters_text(const Json& parameters) {
+  Table table;
+  for (const auto& [key, value] : parameters.items()) {
+    if (value.is_number_float()) {
+      table.add({key, fmt::format("{:.6g}", value.get<double>())});
+    } else {
+      table.add({key, value.is_string() ? value.get<std::string>() : value.dump()});
+    }
+  }
+  return table.text();
+}
+
+Details paper_details(const DecodedScan& scan) {
+  const Json parameters = parameters_json(*scan.paper);
+  return {
+      {{"coefficients", scan.coefficients}, {"patches", scan.patches}, {"parameters", parameters}},
+      fmt::format("fit: {} coefficients in {} patches\nparameters:\n{}",
+                  count_text(scan.coefficients), count_text(scan.patches),
+                  parameters_text(parameters))};
+}
+
+Details compact_details(const CompactContents& c) {
+  const Json parameters = {{"step_m", c.step_m},         {"residual_step_m", c.residual_step_m},
+                           {"root_cells", c.root_cells}, {"smallest_leaf", c.smallest_leaf},
+                           {"bands", c.bands},           {"sectors", c.sectors},
+                           {"heights", c.heights},       {"range_offsets", c.range_offsets}};
+  return {{{"segments", c.bands * c.sectors},
+           {"parameters", parameters},
+           {"statistics", statistics_json(c.statistics)}},
+          fmt::format("parameters:\n{}partition:\n{}", parameters_text(parameters),
+                      statistics_text(c.statistics))};
+}
+
+/// Bytes of all chunks of a name together.
+struct Part {
+  std::string name;
+  std::size_t chunks = 0, bytes = 0;
+};
+
+std::vector<Part> parts_of(const std::vector<ChunkInfo>& chunks, std::size_t file_bytes) {
+  std::vector<Part> parts;
+  std::size_t payloads = 0;
+  for (const ChunkInfo& chunk : chunks) {
+    const auto same = [&](const Part& part) { return part.name == chunk.name; };
+    auto part = std::find_if(parts.begin(), parts.end(), same);
+    if (part == parts.end()) part = parts.insert(part, {chunk.name, 0, 0});
+    ++part->chunks;
+    part->bytes += chunk.bytes;
+    payloads += chunk.bytes;
+  }
+  parts.push_back({"container", 1, file_bytes - payloads});
+  return parts;
+}
+
+double bits_a_return(std::size_t bytes, const DecodedScan& scan) {
+  return 8.0 * static_cast<double>(bytes) /
+         static_cast<double>(std::max<std::size_t>(scan.coded_returns, 1));
+}
+
+Outcome describe_curl(const Job& job, std::span<const std::byte> bytes, std::size_t threads) {
+  DecodeOptions decode_options;
+  decode_options.partition = true;
+  decode_options.threads = threads;
+  const DecodedScan scan = need(decode(bytes, decode_options));
+  const std::vector<ChunkInfo> infos = need(list_chunks(bytes));
+  Json chunks = Json::array(), parts = Json::array();
+  for (const ChunkInfo& chunk : infos) {
     chunks.push_back({{"name", chunk.name}, {"offset", chunk.offset}, {"bytes", chunk.bytes}});
-    chunk_table.add({chunk.name, bytes_text(chunk.bytes)});
+  }
+  Table part_table;
+  for (const Part& part : parts_of(infos, bytes.size())) {
+    const double bits = bits_a_return(part.bytes, scan);
+    parts.push_back({{"name", part.name},
+                     {"chunks", part.chunks},
+                     {"bytes", part.bytes},
+                     {"bits_per_point", bits}});
+    part_table.add({part.chunks > 1 ? fmt::format("{} x {}", part.name, part.chunks) : part.name,
+                    bytes_text(part.bytes), fmt::format("{:.4f} bits a return", bits)});
   }
   const Lattice& lattice = scan.field->lattice();
-  const Json parameters = parameters_json(scan.settings);
   std::string text = fmt::format("{}\n", job.input == "-" ? "standard input" : job.input);
   const auto line = [&](const char* key, const std::string& value) {
     text += fmt::format("  {:<12} {}\n", key, value);
@@ -181,36 +259,27 @@ Outcome describe_curl(const Job& job, std::span<const std::byte> bytes) {
   line("grid", fmt::format("{} x {}, {} rows", lattice.rows(), lattice.columns(),
                            lattice.is_uniform() ? "uniform" : "ring"));
   line("returns", fmt::format("{} coded", count_text(scan.coded_returns)));
-  line("fit", fmt::format("{} coefficients in {} patches", count_text(scan.coefficients),
-                          count_text(scan.patches)));
   line("attributes", attribute_names(scan.attributes));
   for (const auto& [key, value] : scan.metadata) line("metadata", key + " = " + value);
-  line("size", bytes_text(bytes.size()));
-  text += "chunks:\n" + chunk_table.text() + "parameters:\n";
-  Table table;
-  for (const auto& [key, value] : parameters.items()) {
-    if (value.is_number_float()) {
-      table.add({key, fmt::format("{:.6g}", value.get<double>())});
-    } else {
-      table.add({key, value.is_string() ? value.get<std::string>() : value.dump()});
-    }
-  }
-  text += table.text();
-  return {{{"kind", "curl"},
-           {"profile", to_string(scan.profile)},
-           {"sensor", scan.sensor.name},
-           {"rings", scan.sensor.rings.size()},
-           {"rows", lattice.rows()},
-           {"columns", lattice.columns()},
-           {"points_coded", scan.coded_returns},
-           {"coefficients", scan.coefficients},
-           {"patches", scan.patches},
-           {"bytes", bytes.size()},
-           {"chunks", chunks},
-           {"parameters", parameters},
-           {"attributes", attribute_json(scan.attributes)},
-           {"metadata", scan.metadata}},
-          text};
+  line("size", fmt::format("{}, {:.3f} bits a return", bytes_text(bytes.size()),
+                           bits_a_return(bytes.size(), scan)));
+  text += "parts:\n" + part_table.text();
+  Json json = {{"kind", "curl"},
+               {"profile", to_string(scan.profile)},
+               {"sensor", scan.sensor.name},
+               {"rings", scan.sensor.rings.size()},
+               {"rows", lattice.rows()},
+               {"columns", lattice.columns()},
+               {"points_coded", scan.coded_returns},
+               {"bytes", bytes.size()},
+               {"bits_per_point_coded", bits_a_return(bytes.size(), scan)},
+               {"parts", parts},
+               {"chunks", chunks},
+               {"attributes", attribute_json(scan.attributes)},
+               {"metadata", scan.metadata}};
+  const Details details = scan.compact ? compact_details(*scan.compact) : paper_details(scan);
+  json.update(details.json);
+  return {json, text + details.text};
 }
 
 int run(const Options& options) {
@@ -220,7 +289,7 @@ int run(const Options& options) {
                       [&](const Job& job, const ProgressCallback&) {
                         const std::vector<std::byte> bytes = need(read_file(job.input));
                         return options.format.empty() && is_curl(bytes)
-                                   ? describe_curl(job, bytes)
+                                   ? describe_curl(job, bytes, options.common.threads)
                                    : describe_scan(job, bytes, options, sensor);
                       });
 }

@@ -35,8 +35,14 @@ const PaperStages& stages() {
   return all;
 }
 
+EncodeSettings paper_settings() {
+  EncodeSettings settings;
+  settings.profile = Profile::paper;
+  return settings;
+}
+
 const DecodedScan& decoded() {
-  static const DecodedScan once = decode(encode(scan())->bytes).value();
+  static const DecodedScan once = decode(encode(scan(), paper_settings())->bytes).value();
   return once;
 }
 
@@ -72,10 +78,10 @@ void Fit(benchmark::State& state) {
 }
 void EncodeWhole(benchmark::State& state) {
   const Cloud& cloud = scan();
-  for (auto _ : state) benchmark::DoNotOptimize(encode(cloud));
+  for (auto _ : state) benchmark::DoNotOptimize(encode(cloud, paper_settings()));
 }
 void DecodeFile(benchmark::State& state) {
-  const auto bytes = encode(scan())->bytes;
+  const auto bytes = encode(scan(), paper_settings())->bytes;
   for (auto _ : state) benchmark::DoNotOptimize(decode(bytes));
 }
 void Reconstruct(benchmark::State& state) {

@@ -150,7 +150,7 @@ int main(int argc, char** argv) {
     if (!encoded) return fail(encoded.error());
     const Result<DecodedScan> decoded = decode(encoded->bytes);
     if (!decoded) return fail(decoded.error());
-    holds = print_densities(reference, *decoded, *original, in_range(*scan, decoded->settings)) &&
+    holds = print_densities(reference, *decoded, *original, in_range(*scan, *decoded->paper)) &&
             holds;
     const EncodeReport& r = encoded->report;
     const std::string ok = verdict(r.cp_paper_percent, reference.cp_percent);

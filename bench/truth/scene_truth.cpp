@@ -87,6 +87,7 @@ int main() {
     const Cloud scan = simulate(*scene, sensor, {.threads = 0}).value();
     for (const auto& [rows, columns] : {std::pair{1u, 1u}, {2u, 1u}, {2u, 2u}}) {
       EncodeSettings settings;
+      settings.profile = Profile::paper;
       settings.sensor = sensor;
       settings.attributes.emplace();
       settings.threads = 0;

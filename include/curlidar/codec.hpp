@@ -21,13 +21,52 @@
 namespace curlidar {
 
 struct EncodeSettings {
-  Profile profile = Profile::paper;
-  PaperSettings paper{};
+  Profile profile = Profile::compact;
+  CompactSettings compact{};  ///< of Profile::compact
+  PaperSettings paper{};      ///< of the paper's profiles
   /// The sensor; detected from the cloud when absent.
   std::optional<SensorProfile> sensor{};
   /// Attributes to keep: nullopt = all, empty = none. Unknown names are an error.
   std::optional<std::vector<std::string>> attributes{};
   std::size_t threads = 1;  ///< never changes the bytes; 0 = all cores
+};
+
+/// Bits of a compact file without attributes and metadata, by what they are spent on.
+struct CompactBreakdown {
+  double header = 0;  ///< container, parameters, rows, index
+  double mask = 0, partition = 0, modes = 0, coefficients = 0, labels = 0, residual = 0;
+
+  double total() const {
+    return header + mask + partition + modes + coefficients + labels + residual;
+  }
+};
+
+/// What a compact file is made of.
+struct CompactStatistics {
+  std::size_t leaves = 0;
+  std::size_t leaves_with_residual = 0;
+  std::vector<std::size_t> leaves_by_size;       ///< by floor(log2(cells))
+  std::vector<std::size_t> leaves_by_layers;     ///< [0]: of one layer
+  std::vector<std::size_t> layers_by_functions;  ///< of 0, 1, 3 and 6 functions of their own
+  /// Layers that start from a neighbour's plane; decoders count them if asked for the partition.
+  std::size_t inherited_layers = 0;
+};
+
+/// What compact encoding reached.
+struct CompactReport {
+  /// Distances of the decoded returns, as the written file gives them, to their originals.
+  double mean_error_m = 0, rms_error_m = 0, max_error_m = 0;
+  std::optional<double> error_nn_m;  ///< if it was the target
+  double bits_per_point_coded = 0;   ///< all bytes but attributes and metadata
+  double step_m = 0, residual_step_m = 0;
+  std::uint32_t rows = 0, columns = 0;
+  std::uint32_t segments = 1;
+  bool cell_centres = false;  ///< the cloud's points were cell centres and kept their cells
+  bool heights = false;       ///< rows have heights: beams that do not start at the origin
+  bool range_offsets = false;
+  std::uint32_t encodings = 0;  ///< tried on the way to the target
+  CompactBreakdown breakdown;
+  CompactStatistics statistics;
 };
 
 struct EncodeReport {
@@ -43,6 +82,7 @@ struct EncodeReport {
   std::vector<std::size_t> degrees;  ///< patches of each degree
   /// The paper's compression percentage: (8 B a coefficient + 4 bits a cell) / 24 B a point.
   double cp_paper_percent = 0;
+  std::optional<CompactReport> compact;  ///< of Profile::compact, whose files leave the above 0
   std::vector<StageTime> stages_ms;
 };
 
@@ -51,7 +91,8 @@ struct Encoded {
   EncodeReport report;
 };
 
-/// Encodes one scan. Same bytes for any thread count. Cost: about 0.1 s for 120 k points.
+/// Encodes one scan. Same bytes for any thread count. Errors: invalid_argument (settings, no return
+/// to code, a target out of reach; says what to do), unsupported (limited-field scanners).
 Result<Encoded> encode(const Cloud& cloud, const EncodeSettings& settings = {},
                        const ProgressCallback& progress = {});
 
@@ -61,12 +102,58 @@ struct DecodeLimits {
   std::uint64_t max_bytes = 1ull << 32;  ///< total of unpacked chunks
 };
 
+/// A part of a scan: rings [ring_begin, ring_end), 0 the highest, and azimuths from azimuth_begin
+/// counter-clockwise to azimuth_end (radians; a full turn or more apart: all of them).
+struct ScanRegion {
+  std::uint32_t ring_begin = 0, ring_end = 0xffffffff;
+  double azimuth_begin = -4, azimuth_end = 4;
+};
+
+struct DecodeOptions {
+  DecodeLimits limits{};
+  /// Compact files: without the residual layer.
+  bool field_only = false;
+  /// Compact files: only this part; segments outside it are not decoded.
+  std::optional<ScanRegion> region{};
+  /// Takes files that are cut off as far as they go; DecodedScan::missing says what is not there.
+  bool allow_truncated = false;
+  /// Compact files: keep what `CompactContents::leaves` and `layer` tell.
+  bool partition = false;
+  std::size_t threads = 1;  ///< 0 = all cores
+};
+
+/// A block of cells with the surfaces that describe it.
+struct CompactLeaf {
+  std::uint32_t row = 0, column = 0, rows = 0, columns = 0;
+  std::uint32_t layers = 1;
+  bool residual = false;
+};
+
+/// What is special about a compact file.
+struct CompactContents {
+  double step_m = 0, residual_step_m = 0;
+  std::uint32_t root_cells = 0;     ///< side of the blocks that the partition starts from
+  std::uint32_t smallest_leaf = 0;  ///< cells
+  std::uint32_t bands = 1, sectors = 1;
+  bool heights = false, range_offsets = false;
+  CompactStatistics statistics;
+  std::vector<CompactLeaf> leaves;  ///< on request
+  /// Layer of each cell's return in its leaf, row-major; 255 where there is none. On request.
+  std::vector<std::uint8_t> layer;
+};
+
 /// A decoded file: everything it holds, nothing reconstructed yet.
 struct DecodedScan {
-  Profile profile = Profile::paper;
-  SensorProfile sensor;
-  PaperSettings settings;
+  Profile profile = Profile::compact;
+  SensorProfile sensor;  ///< compact files tell its name, if metadata are kept, and its elevations
+  std::optional<PaperSettings> paper;      ///< of the paper's profiles
+  std::optional<CompactContents> compact;  ///< of Profile::compact
   std::shared_ptr<const Field> field;
+  /// Compact files: the coded returns in raster order, the same doubles on every machine. Empty in
+  /// the paper's profiles, whose returns the field gives.
+  std::vector<Vec3> points;
+  /// What should be there and is not, one sentence each: the file was cut off.
+  std::vector<std::string> missing;
   std::map<std::string, std::string> metadata;
   /// One value per coded return, in raster order (row by row, top row first).
   std::vector<Attribute> attributes;
@@ -77,6 +164,8 @@ struct DecodedScan {
 
 /// Reads a .curl file. Never throws, whatever the bytes.
 Result<DecodedScan> decode(std::span<const std::byte> bytes, const DecodeLimits& limits = {});
+/// Invalid_argument for options that the file's profile does not know.
+Result<DecodedScan> decode(std::span<const std::byte> bytes, const DecodeOptions& options);
 
 /// Whether the bytes start as a .curl file of any version does.
 bool is_curl(std::span<const std::byte> bytes);
@@ -101,6 +190,7 @@ struct ReconstructSettings {
 
 /// The cloud seen on an R_row x R_col times denser grid. With factors 1 x 1 and masks: the coded
 /// returns one for one with their attributes; otherwise attributes of the nearest coded return.
+/// Compact files cut off or decoded in part give what is there.
 Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& settings = {});
 
 }  // namespace curlidar

@@ -26,6 +26,14 @@ class Field {
   virtual void evaluate_row(double row, std::span<const double> columns, bool masked,
                             std::span<double> ranges) const = 0;
 
+  /// Elevation at which a point at `range` metres of a fractional row is seen: that of the row,
+  /// unless its beams start away from the origin.
+  virtual double elevation(double row, [[maybe_unused]] double range) const {
+    return lattice().elevation(row);
+  }
+  /// Whether elevation() does not depend on the range.
+  virtual bool one_elevation_a_row() const { return true; }
+
   /// Whether the cell holds a coded return.
   virtual bool occupied(std::uint32_t row, std::uint32_t column) const = 0;
 };

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/try.hpp"
+#include "codec/compact_decode.hpp"
 #include "codec/field_chunks.hpp"
 #include "curlidar/codec.hpp"
 #include "format/attributes_chunk.hpp"
@@ -40,10 +41,7 @@ Result<std::shared_ptr<const Field>> read_field(const std::vector<Chunk>& chunks
       PaperModel{lattice, parameters.paper, std::move(masks), std::move(patches)}));
 }
 
-}  // namespace
-
-Result<DecodedScan> decode(std::span<const std::byte> bytes, const DecodeLimits& limits) {
-  CURLIDAR_TRY_ASSIGN(chunks, read_container(bytes));
+Result<DecodedScan> decode_paper(const std::vector<Chunk>& chunks, const DecodeLimits& limits) {
   CURLIDAR_TRY_ASSIGN(sensor_chunk, require_chunk(chunks, ChunkType::sensor));
   CURLIDAR_TRY_ASSIGN(sensor, read_sensor(sensor_chunk));
   CURLIDAR_TRY_ASSIGN(parameters_chunk, require_chunk(chunks, ChunkType::parameters));
@@ -64,7 +62,7 @@ Result<DecodedScan> decode(std::span<const std::byte> bytes, const DecodeLimits&
   DecodedScan scan;
   scan.profile = parameters.profile;
   scan.sensor = std::move(sensor);
-  scan.settings = settings;
+  scan.paper = settings;
   scan.coded_returns =
       static_cast<std::size_t>(std::count(masks.point.begin(), masks.point.end(), 1));
   if (const Chunk* chunk = find_chunk(chunks, ChunkType::attributes)) {
@@ -78,6 +76,46 @@ Result<DecodedScan> decode(std::span<const std::byte> bytes, const DecodeLimits&
   CURLIDAR_TRY_ASSIGN(field,
                       read_field(chunks, parameters, lattice, std::move(masks), limits, scan));
   scan.field = std::move(field);
+  return scan;
+}
+
+/// A file may be cut off behind its geometry.
+void note_cut(const PartialContainer& container, DecodedScan& scan) {
+  if (container.complete || !scan.missing.empty()) return;
+  scan.missing.push_back(container.torn
+                             ? fmt::format("its {} chunk", to_string(container.torn->type))
+                             : "its end, with any attributes and metadata behind it");
+}
+
+}  // namespace
+
+Result<DecodedScan> decode(std::span<const std::byte> bytes, const DecodeLimits& limits) {
+  DecodeOptions options;
+  options.limits = limits;
+  return decode(bytes, options);
+}
+
+Result<DecodedScan> decode(std::span<const std::byte> bytes, const DecodeOptions& options) {
+  PartialContainer container;
+  if (options.allow_truncated) {
+    CURLIDAR_TRY_ASSIGN(partial, read_container_prefix(bytes));
+    container = std::move(partial);
+  } else {
+    CURLIDAR_TRY_ASSIGN(chunks, read_container(bytes));
+    container.complete = true;
+    container.chunks = std::move(chunks);
+  }
+  if (is_compact(container.chunks)) {
+    CURLIDAR_TRY_ASSIGN(scan, decode_compact(container, options));
+    note_cut(container, scan);
+    return scan;
+  }
+  if (options.field_only || options.region) {
+    return Error{ErrorCode::invalid_argument,
+                 "only files of the compact profile can be decoded in part; this one has another"};
+  }
+  CURLIDAR_TRY_ASSIGN(scan, decode_paper(container.chunks, options.limits));
+  note_cut(container, scan);
   return scan;
 }
 

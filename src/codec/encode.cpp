@@ -6,11 +6,11 @@
 
 #include "base/stopwatch.hpp"
 #include "base/try.hpp"
+#include "codec/chosen_attributes.hpp"
+#include "codec/compact_encode.hpp"
 #include "codec/field_chunks.hpp"
 #include "curlidar/codec.hpp"
 #include "curlidar/paper.hpp"
-#include "format/attributes_chunk.hpp"
-#include "format/metadata_chunk.hpp"
 #include "format/parameters_chunk.hpp"
 #include "format/sensor_chunk.hpp"
 #include "paper/global_fit.hpp"
@@ -54,26 +54,13 @@ Result<Prepared> prepare(const Cloud& cloud, const EncodeSettings& settings) {
   return out;
 }
 
-/// The attributes to keep, of the coded returns in raster order.
-Result<std::vector<Attribute>> choose_attributes(
-    const Cloud& cloud, const std::optional<std::vector<std::string>>& names,
-    const RangeImage& image, const CellMasks& masks) {
-  Cloud chosen;
-  chosen.positions = cloud.positions;
-  if (!names) chosen.attributes = cloud.attributes;
-  for (const std::string& name : names.value_or(std::vector<std::string>{})) {
-    const Attribute* attribute = cloud.find(name);
-    if (attribute == nullptr) {
-      return Error{ErrorCode::invalid_argument,
-                   fmt::format("the cloud has no attribute '{}' to keep", name)};
-    }
-    chosen.attributes.push_back(*attribute);
-  }
+/// The points that cells with a bit in the mask come from, in raster order.
+std::vector<std::uint32_t> coded_points(const RangeImage& image, const CellMasks& masks) {
   std::vector<std::uint32_t> coded;
   for (std::size_t cell = 0; cell < image.source.size(); ++cell) {
     if (masks.point[cell]) coded.push_back(image.source[cell]);
   }
-  return std::move(select(chosen, coded).attributes);
+  return coded;
 }
 
 double cp_paper(std::size_t coefficients, std::size_t cells, std::size_t gridded_points) {
@@ -109,10 +96,8 @@ CellMasks add_field(const PaperStages& stages, const EncodeSettings& settings,
   return std::move(model.masks);
 }
 
-}  // namespace
-
-Result<Encoded> encode(const Cloud& cloud, const EncodeSettings& settings,
-                       const ProgressCallback& progress) {
+Result<Encoded> encode_paper(const Cloud& cloud, const EncodeSettings& settings,
+                             const ProgressCallback& progress) {
   Stopwatch watch;
   CURLIDAR_TRY_ASSIGN(prepared, prepare(cloud, settings));
   Encoded out;
@@ -138,18 +123,10 @@ Result<Encoded> encode(const Cloud& cloud, const EncodeSettings& settings,
   report.stages_ms.push_back({"fit", watch.lap_ms()});
 
   writer.add(ChunkType::parameters, write_parameters(parameters));
-  CURLIDAR_TRY_ASSIGN(attributes,
-                      choose_attributes(cloud, settings.attributes, stages.image, masks));
-  report.points_coded =
-      static_cast<std::size_t>(std::count(masks.point.begin(), masks.point.end(), 1));
-  if (!attributes.empty()) {
-    CURLIDAR_TRY_ASSIGN(payload, write_attributes(attributes, report.points_coded));
-    writer.add(ChunkType::attributes, payload);
-  }
-  if (!cloud.metadata.empty()) {
-    CURLIDAR_TRY_ASSIGN(payload, write_metadata(cloud.metadata));
-    writer.add(ChunkType::metadata, payload);
-  }
+  const std::vector<std::uint32_t> coded = coded_points(stages.image, masks);
+  report.points_coded = coded.size();
+  CURLIDAR_TRY(add_attributes(cloud, settings.attributes, coded, writer));
+  CURLIDAR_TRY(add_metadata(cloud.metadata, writer));
   out.bytes = std::move(writer).finish();
   report.stages_ms.push_back({"write", watch.lap_ms()});
 
@@ -164,6 +141,14 @@ Result<Encoded> encode(const Cloud& cloud, const EncodeSettings& settings,
       cp_paper(report.coefficients, stages.image.lattice.cells(), stages.counts.kept);
   if (progress) progress("write", 1);
   return out;
+}
+
+}  // namespace
+
+Result<Encoded> encode(const Cloud& cloud, const EncodeSettings& settings,
+                       const ProgressCallback& progress) {
+  return settings.profile == Profile::compact ? encode_compact(cloud, settings, progress)
+                                              : encode_paper(cloud, settings, progress);
 }
 
 Result<Mesh> polar_mesh(const Cloud& cloud, const EncodeSettings& settings) {

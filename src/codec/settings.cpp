@@ -2,7 +2,9 @@
 #include "curlidar/settings.hpp"
 
 #include <array>
+#include <cmath>
 #include <string>
+#include <utility>
 
 namespace curlidar {
 namespace {
@@ -36,13 +38,15 @@ constexpr std::array<NamedPreset, 4> kPresets{{
     {"superrso", newer_college},
 }};
 
-constexpr std::array<Profile, 3> kProfiles{Profile::paper, Profile::paper_1to1,
+constexpr std::array<Profile, 4> kProfiles{Profile::compact, Profile::paper, Profile::paper_1to1,
                                            Profile::paper_global};
 
 }  // namespace
 
 const char* to_string(Profile profile) {
   switch (profile) {
+    case Profile::compact:
+      return "compact";
     case Profile::paper:
       return "paper";
     case Profile::paper_1to1:
@@ -57,8 +61,32 @@ Result<Profile> profile_by_name(std::string_view name) {
   for (const Profile profile : kProfiles) {
     if (name == to_string(profile)) return profile;
   }
-  return Error{ErrorCode::invalid_argument, "unknown profile '" + std::string(name) +
-                                                "'; known: paper, paper-1to1, paper-global"};
+  return Error{ErrorCode::invalid_argument,
+               "unknown profile '" + std::string(name) +
+                   "'; known: compact, paper, paper-1to1, paper-global"};
+}
+
+Status validate(const CompactSettings& s) {
+  const auto invalid = [](std::string what) {
+    return Error{ErrorCode::invalid_argument, std::move(what)};
+  };
+  if (s.columns != 0 && (s.columns < 4 || s.columns > 65536)) {
+    return invalid("columns must be in 4..65536, or 0 for a choice by the cloud");
+  }
+  if (!(s.min_range_m >= 0) || !std::isfinite(s.min_range_m)) {
+    return invalid("the minimum range must be a finite number of metres, 0 or more");
+  }
+  if (!(s.max_range.metres >= 0) || !(s.max_range.percentile >= 0) ||
+      s.max_range.percentile > 100) {
+    return invalid("the maximum range must be metres above 0 or a percentile in (0, 100]");
+  }
+  if (s.effort < 1 || s.effort > kMaxEffort) return invalid("the effort must be in 1..9");
+  const bool metres = s.target != CompactTarget::bits_per_point;
+  if (!(s.target_value > 0) || s.target_value > (metres ? 100 : 1000)) {
+    return invalid(metres ? "the wanted error or step must be above 0 and at most 100 m"
+                          : "the wanted bits per point must be above 0 and at most 1000");
+  }
+  return {};
 }
 
 std::vector<std::string> paper_preset_names() {

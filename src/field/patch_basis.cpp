@@ -51,11 +51,11 @@ double mean_product(const std::vector<double>& a, const std::vector<double>& b) 
 
 }  // namespace
 
-SinCos SinCos::of(double angle) {
+AngleParts AngleParts::of(double angle) {
   return {std::sin(angle), std::cos(angle)};
 }
 
-LocalDirection LocalFrame::local(const SinCos& elevation, const SinCos& half) const {
+LocalDirection LocalFrame::local(const AngleParts& elevation, const AngleParts& half) const {
   const double sine = 2 * half.sin * half.cos;     // of the azimuth difference
   const double versine = 2 * half.sin * half.sin;  // one minus its cosine
   const double sin_up = elevation.sin * centre_.cos - elevation.cos * centre_.sin;

@@ -10,9 +10,9 @@
 namespace curlidar {
 
 /// Sine and cosine of an angle, kept because every use needs both.
-struct SinCos {
+struct AngleParts {
   double sin = 0, cos = 1;
-  static SinCos of(double angle);
+  static AngleParts of(double angle);
 };
 
 /// A direction seen from the centre of a patch: components along east and north, and one minus
@@ -25,13 +25,13 @@ struct LocalDirection {
 /// Tangent frame at (elevation, azimuth 0); directions are given relative to it in azimuth.
 class LocalFrame {
  public:
-  explicit LocalFrame(double centre_elevation) : centre_(SinCos::of(centre_elevation)) {}
+  explicit LocalFrame(double centre_elevation) : centre_(AngleParts::of(centre_elevation)) {}
 
   /// `half` is of half the azimuth difference, `elevation` of the direction's elevation.
-  LocalDirection local(const SinCos& elevation, const SinCos& half) const;
+  LocalDirection local(const AngleParts& elevation, const AngleParts& half) const;
 
  private:
-  SinCos centre_;
+  AngleParts centre_;
 };
 
 /// Bounds on a patch: they keep the cost of a patch finite on both sides of a file. Degree 24 on a

@@ -40,7 +40,7 @@ void PatchField::evaluate_row(double row, std::span<const double> columns, bool 
                               std::span<double> ranges) const {
   const std::size_t patch_row = grid_.patch_row_at(is_index(row) ? row : 0);
   const LocalFrame frame = grid_.frame(patch_row);
-  const SinCos elevation = SinCos::of(lattice_.elevation(row));
+  const AngleParts elevation = AngleParts::of(lattice_.elevation(row));
   for (std::size_t i = 0; i < columns.size(); ++i) {
     ranges[i] = std::numeric_limits<double>::quiet_NaN();
     if (!is_index(row) || !is_index(columns[i])) continue;
@@ -52,7 +52,7 @@ void PatchField::evaluate_row(double row, std::span<const double> columns, bool 
     if (local.empty()) continue;
     const double azimuth = std::remainder(
         lattice_.azimuth(columns[i]) - grid_.centre_azimuth(patch_column), 2 * std::numbers::pi);
-    const double range = evaluate_local(local, frame.local(elevation, SinCos::of(azimuth / 2)));
+    const double range = evaluate_local(local, frame.local(elevation, AngleParts::of(azimuth / 2)));
     if (range > 0 && range >= range_begin_m_ && range <= range_end_m_) ranges[i] = range;
   }
 }

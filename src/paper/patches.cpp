@@ -98,10 +98,10 @@ PatchBasis PatchGrid::make_basis(std::size_t patch_row, std::size_t patch_column
   std::vector<LocalDirection> cells;
   cells.reserve(all.cells());
   for (std::int64_t row = all.row_begin; row < all.row_end; ++row) {
-    const SinCos elevation = SinCos::of(lattice_.elevation(lattice_row(static_cast<double>(row))));
+    const AngleParts elevation = AngleParts::of(lattice_.elevation(lattice_row(static_cast<double>(row))));
     for (std::int64_t column = all.column_begin; column < all.column_end; ++column) {
       const double azimuth = (static_cast<double>(column) - middle) * column_angle;
-      cells.push_back(local_frame.local(elevation, SinCos::of(azimuth / 2)));
+      cells.push_back(local_frame.local(elevation, AngleParts::of(azimuth / 2)));
     }
   }
   return PatchBasis(std::move(cells));

@@ -39,8 +39,9 @@ Line evaluate_line(const Field& field, const DenseGrid& grid, std::size_t i,
   const Lattice& lattice = field.lattice();
   std::vector<double> ranges(columns.size());
   field.evaluate_row(grid.row(i), columns, settings.masks, ranges);
-  const double elevation = lattice.elevation(grid.row(i));
-  const double flat = std::cos(elevation), up = std::sin(elevation);
+  const bool one_elevation = field.one_elevation_a_row();
+  double elevation = lattice.elevation(grid.row(i));
+  double flat = std::cos(elevation), up = std::sin(elevation);
   const double nearest_row =
       std::clamp(std::round(grid.row(i)), 0.0, static_cast<double>(lattice.rows() - 1));
   const std::size_t line_begin = static_cast<std::size_t>(nearest_row) * lattice.columns();
@@ -48,6 +49,11 @@ Line evaluate_line(const Field& field, const DenseGrid& grid, std::size_t i,
   for (std::size_t j = 0; j < columns.size(); ++j) {
     if (std::isnan(ranges[j]) && !settings.organised) continue;
     const double r = ranges[j];
+    if (!one_elevation && !std::isnan(r)) {
+      elevation = field.elevation(grid.row(i), r);
+      flat = std::cos(elevation);
+      up = std::sin(elevation);
+    }
     line.points.push_back({r * flat * circle[j].x, r * flat * circle[j].y, r * up});
     const auto column = static_cast<std::size_t>(std::round(columns[j])) % lattice.columns();
     line.nearest.push_back(std::isnan(r) ? kNoReturn : numbers[line_begin + column]);
@@ -72,6 +78,32 @@ Attribute gather(const Attribute& from, const std::vector<std::uint32_t>& return
   return to;
 }
 
+/// The coded returns themselves, as the file gives them to the bit.
+Cloud coded_cloud(const DecodedScan& scan, bool organised) {
+  const Lattice& lattice = scan.field->lattice();
+  Cloud cloud;
+  cloud.metadata = scan.metadata;
+  if (!organised) {
+    cloud.positions = scan.points;
+    cloud.attributes = scan.attributes;
+    cloud.width = static_cast<std::uint32_t>(scan.points.size());
+    return cloud;
+  }
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::uint32_t> numbers = number_returns(*scan.field);
+  cloud.positions.reserve(numbers.size());
+  for (const std::uint32_t number : numbers) {
+    cloud.positions.push_back(number < scan.points.size() ? scan.points[number]
+                                                          : Vec3{kNan, kNan, kNan});
+  }
+  for (const Attribute& attribute : scan.attributes) {
+    cloud.attributes.push_back(gather(attribute, numbers));
+  }
+  cloud.width = lattice.columns();
+  cloud.height = lattice.rows();
+  return cloud;
+}
+
 }  // namespace
 
 Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& settings) {
@@ -87,6 +119,9 @@ Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& se
     return Error{ErrorCode::limit_exceeded,
                  fmt::format("a grid of {} x {} has more than the {} points allowed", grid.rows,
                              grid.columns, settings.max_points)};
+  }
+  if (settings.rows == 1 && settings.columns == 1 && settings.masks && !scan.points.empty()) {
+    return coded_cloud(scan, settings.organised);
   }
   std::vector<double> columns(grid.columns);
   std::vector<Vec3> circle(grid.columns);

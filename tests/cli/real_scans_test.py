@@ -32,7 +32,10 @@ class RealScansTest(CommandTest):
             self.skipTest("none of the scans is in the data folder")
         for name, rings, options in scans[:2] if QUICK else scans:
             with self.subTest(scan=name):
-                self.check(self.data / name, rings, options)
+                self.check(self.data / name, rings, ["--profile", "paper", *options])
+                report = self.check(self.data / name, rings, ["--effort", 1])
+                self.assertLessEqual(report["mean_error_m"], 0.05)
+                self.assertGreater(report["mean_error_m"], 0.95 * 0.05)
 
     def check(self, scan, rings, options):
         info = self.run_json("info", scan)
@@ -47,6 +50,7 @@ class RealScansTest(CommandTest):
         self.assertLess(distances["a_to_b"]["p50"], 0.2)
         self.run_ok("render", "scan.curl", "--rows", "2", "-o", "scan.png", "--size", "400x300")
         self.assertEqual(png_size(self.path("scan.png")), (400, 300))
+        return report
 
 
 if __name__ == "__main__":

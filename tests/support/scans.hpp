@@ -33,9 +33,10 @@ inline SensorProfile small_sensor(std::size_t rings = 24, std::uint32_t columns 
   return sensor;
 }
 
-/// Settings that suit small_sensor's coarse grid.
+/// Settings of the paper's profile that suit small_sensor's coarse grid.
 inline EncodeSettings small_settings(const SensorProfile& sensor = small_sensor()) {
   EncodeSettings settings;
+  settings.profile = Profile::paper;
   settings.sensor = sensor;
   settings.paper.columns = sensor.columns;
   settings.paper.min_range_m = 1;

@@ -274,6 +274,7 @@ TEST(Codec, KittiScanMeetsTheReferenceErrors) {
   if (!data) GTEST_SKIP() << "set CURLIDAR_DATA to the folder with the real scans";
   const Cloud scan = read_cloud((*data / "kitti_raw/curl_example/0.pcd").string()).value();
   EncodeSettings settings;
+  settings.profile = Profile::paper;
   settings.sensor = builtin_sensor("hdl64e-kitti").value();
   const Encoded encoded = encode(scan, settings).value();
   const Cloud cloud = reconstruct(decode(encoded.bytes).value()).value();

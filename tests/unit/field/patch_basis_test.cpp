@@ -38,7 +38,7 @@ struct Patch {
 
   LocalDirection local(double elevation, double azimuth) const {
     return LocalFrame(centre_elevation)
-        .local(SinCos::of(elevation), SinCos::of((azimuth - centre_azimuth) / 2));
+        .local(AngleParts::of(elevation), AngleParts::of((azimuth - centre_azimuth) / 2));
   }
   PatchBasis basis() const {
     std::vector<LocalDirection> cells;
@@ -89,7 +89,7 @@ TEST(LocalFrame, AgreesWithPlainTrigonometry) {
     const Vec3 c = direction_of(centre, 0), d = direction_of(elevation, azimuth);
     const Vec3 north = direction_of(centre + kPi / 2, 0);
     const LocalDirection l =
-        LocalFrame(centre).local(SinCos::of(elevation), SinCos::of(azimuth / 2));
+        LocalFrame(centre).local(AngleParts::of(elevation), AngleParts::of(azimuth / 2));
     EXPECT_NEAR(l.east, d.y, 1e-14);
     EXPECT_NEAR(l.north, dot(d, north), 1e-14);
     EXPECT_NEAR(l.down, 1 - dot(d, c), 1e-14);
@@ -100,7 +100,7 @@ TEST(LocalFrame, AgreesWithPlainTrigonometry) {
 TEST(LocalFrame, KeepsTheDigitsOfSmallAngles) {
   const double up = 3e-6, across = 4e-6, centre = -0.3;
   const LocalDirection l =
-      LocalFrame(centre).local(SinCos::of(centre + up), SinCos::of(across / 2));
+      LocalFrame(centre).local(AngleParts::of(centre + up), AngleParts::of(across / 2));
   // 1 - cos of the angle between: haversine formula.
   const double expected = 2 * std::pow(std::sin(up / 2), 2) + 2 * std::cos(centre) *
                                                                   std::cos(centre + up) *
@@ -197,7 +197,7 @@ TEST(PatchBasis, IsAHarmonicBetweenTheCells) {
 
 TEST(PatchBasis, EvaluatesDegreesBeyondTheStack) {
   constexpr std::size_t kHigh = 40;
-  const LocalDirection d = LocalFrame(0.2).local(SinCos::of(0.9), SinCos::of(0.35));
+  const LocalDirection d = LocalFrame(0.2).local(AngleParts::of(0.9), AngleParts::of(0.35));
   std::vector<double> a(harmonics_up_to(kHigh), 0.0);
   a[0] = 2;
   a[kHigh * kHigh] = 3;       // Re zeta^40

@@ -144,7 +144,7 @@ TEST(PatchGrid, BasisIsOverTheWindowsDirections) {
             lattice.azimuth(static_cast<double>(j) / 2) - grid.centre_azimuth(column),
             2 * std::numbers::pi);
         const LocalDirection d =
-            grid.frame(row).local(SinCos::of(elevation), SinCos::of(azimuth / 2));
+            grid.frame(row).local(AngleParts::of(elevation), AngleParts::of(azimuth / 2));
         double expected = 0;
         for (std::size_t k = 0; k < coefficients.size(); ++k) {
           expected += coefficients[k] * basis.values(k)[cell];

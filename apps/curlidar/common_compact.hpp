@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Options of the compact profile.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common_options.hpp"
+#include "common_report.hpp"
+#include "curlidar/codec.hpp"
+
+namespace curlidar::app {
+
+/// --error, --error-nn, --step, --bits, --effort, --no-index. The object must live as long as the
+/// CLI::App.
+class CompactOptions {
+ public:
+  void add(CLI::App& app);
+
+  /// Writes target, effort and index to `settings`. Failure(kExitUsage) if two targets are given or
+  /// a value makes no sense.
+  void apply(CompactSettings& settings) const;
+  /// The first of these options that was given; "" if none was.
+  std::string first_given() const;
+
+ private:
+  struct Target {
+    CompactTarget kind;
+    double value = 0;
+    CLI::Option* option = nullptr;
+  };
+  void add_target(CLI::App& app, const char* name, CompactTarget kind, double most,
+                  const char* help);
+
+  std::vector<Target> targets_;
+  std::uint32_t effort_ = CompactSettings{}.effort;
+  bool no_index_ = false;
+  std::vector<CLI::Option*> others_;
+};
+
+Json breakdown_json(const CompactBreakdown& breakdown);
+Json statistics_json(const CompactStatistics& statistics);
+/// Aligned lines: bits per return and share of each part.
+std::string breakdown_text(const CompactBreakdown& breakdown, std::size_t returns);
+/// Leaves by size and layers, layers by functions.
+std::string statistics_text(const CompactStatistics& statistics);
+
+}  // namespace curlidar::app

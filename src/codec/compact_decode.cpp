@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "codec/compact_decode.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "base/try.hpp"
+#include "codec/compact_field.hpp"
+#include "codec/compact_model.hpp"
+#include "format/attributes_chunk.hpp"
+#include "format/metadata_chunk.hpp"
+
+namespace curlidar {
+namespace {
+
+bool is_compact_type(ChunkType type) {
+  return type >= ChunkType::compact_parameters && type <= ChunkType::compact_residual;
+}
+
+compact::ScanChunks scan_chunks(const PartialContainer& container) {
+  compact::ScanChunks out;
+  out.complete = container.complete;
+  const auto add = [&](ChunkType type, ByteSpan payload, std::size_t offset, bool whole) {
+    if (is_compact_type(type)) {
+      out.chunks.push_back({static_cast<compact::ScanPart>(type), payload, offset, whole});
+    }
+  };
+  for (const Chunk& chunk : container.chunks) add(chunk.type, chunk.payload, chunk.offset, true);
+  if (container.torn) {
+    add(container.torn->type, container.torn->payload, container.torn->offset, false);
+  }
+  return out;
+}
+
+/// Which cells a region holds.
+class RegionFilter {
+ public:
+  RegionFilter(const ScanRegion& region, const compact::ScanParameters& size)
+      : rows_{std::min(region.ring_begin, size.rows), std::min(region.ring_end, size.rows)},
+        columns_(size.columns, false) {
+    const double turn = 2 * std::numbers::pi;
+    const double width = region.azimuth_end - region.azimuth_begin;
+    for (std::uint32_t column = 0; column < size.columns; ++column) {
+      const double azimuth = -std::numbers::pi + turn * column / size.columns;
+      double from_begin = std::fmod(azimuth - region.azimuth_begin, turn);
+      if (from_begin < 0) from_begin += turn;
+      columns_[column] = width >= turn || from_begin < width;
+    }
+  }
+
+  bool holds(std::uint32_t row, std::uint32_t column) const {
+    return row >= rows_[0] && row < rows_[1] && columns_[column];
+  }
+  bool empty() const {
+    return rows_[0] >= rows_[1] ||
+           std::find(columns_.begin(), columns_.end(), true) == columns_.end();
+  }
+  /// The smallest range of cells with all of the region; the whole turn if it crosses the seam.
+  compact::Region bounds() const {
+    const auto first = std::find(columns_.begin(), columns_.end(), true);
+    const auto last = std::find(columns_.rbegin(), columns_.rend(), true);
+    return {rows_[0], rows_[1], static_cast<std::uint32_t>(first - columns_.begin()),
+            static_cast<std::uint32_t>(columns_.rend() - last)};
+  }
+
+ private:
+  std::uint32_t rows_[2];
+  std::vector<bool> columns_;
+};
+
+Status check_region(const ScanRegion& region) {
+  if (region.ring_begin >= region.ring_end || !(region.azimuth_end > region.azimuth_begin) ||
+      !std::isfinite(region.azimuth_begin) || !std::isfinite(region.azimuth_end)) {
+    return Error{
+        ErrorCode::invalid_argument,
+        "the region is empty: rings and azimuths go from the smaller to the larger number"};
+  }
+  return {};
+}
+
+/// Numbers of the returns that are kept, among those of the whole scan; empties the other cells.
+std::vector<std::uint32_t> crop(compact::DecodedScan& scan, const RegionFilter& filter) {
+  std::vector<std::uint32_t> kept;
+  std::uint32_t number = 0;
+  std::size_t cell = 0;
+  for (std::uint32_t row = 0; row < scan.parameters.rows; ++row) {
+    for (std::uint32_t column = 0; column < scan.parameters.columns; ++column, ++cell) {
+      const bool coded = scan.range[cell] > 0;
+      if (filter.holds(row, column)) {
+        if (coded) kept.push_back(number);
+      } else {
+        scan.occupied[cell] = 0;
+        scan.range[cell] = scan.field_range[cell] = 0;
+        scan.surface[cell] = compact::kNoSurface;
+        scan.leaf[cell] = -1;
+      }
+      number += coded ? 1 : 0;
+    }
+  }
+  return kept;
+}
+
+double metres(std::int32_t units) {
+  return static_cast<double>(units) / compact::kRangeUnit;
+}
+
+SensorProfile sensor_of(const compact::RowTable& table, const compact::DecodedScan& scan) {
+  SensorProfile sensor;
+  sensor.name = "unknown";
+  sensor.columns = table.turn_columns;
+  for (std::size_t row = 0; row < table.elevation.size(); ++row) {
+    Ring ring;
+    ring.elevation = radians_from_angle(table.elevation[row]);
+    if (!table.height.empty()) ring.vertical_offset_m = metres(table.height[row]);
+    sensor.rings.push_back(ring);
+  }
+  sensor.fov_up = sensor.rings.front().elevation;
+  sensor.fov_down = sensor.rings.back().elevation;
+  std::int32_t farthest = 0;
+  for (const std::int32_t range : scan.range) farthest = std::max(farthest, range);
+  sensor.max_range_m = std::max(sensor.max_range_m, metres(farthest));
+  return sensor;
+}
+
+void count_node(const compact::Node& node, CompactStatistics& statistics) {
+  for (const compact::Node& child : node.children) count_node(child, statistics);
+  if (node.split != compact::Split::none) return;
+  for (std::uint32_t i = 0; i < node.leaf.layers; ++i) {
+    statistics.inherited_layers += node.leaf.layer[i].parent != 0 ? 1 : 0;
+  }
+}
+
+CompactStatistics statistics_of(const compact::DecodedScan& scan) {
+  CompactStatistics out;
+  out.leaves = scan.leaves.size();
+  out.leaves_by_layers.resize(compact::kMaxLayers);
+  out.layers_by_functions.resize(compact::kFunctions.size());
+  for (const compact::DecodedLeaf& leaf : scan.leaves) {
+    out.leaves_with_residual += leaf.has_residual ? 1 : 0;
+    const auto size = static_cast<std::size_t>(std::bit_width(leaf.block.cells()) - 1);
+    out.leaves_by_size.resize(std::max(out.leaves_by_size.size(), size + 1));
+    ++out.leaves_by_size[size];
+    ++out.leaves_by_layers[leaf.layers - 1];
+    for (std::uint32_t i = 0; i < leaf.layers; ++i) {
+      ++out.layers_by_functions[scan.surfaces[leaf.first_surface + i].functions];
+    }
+  }
+  for (const compact::DecodedSegment& segment : scan.segments) {
+    for (const compact::Node& node : segment.nodes) count_node(node, out);
+  }
+  return out;
+}
+
+void add_partition(const compact::DecodedScan& scan, CompactContents& contents) {
+  for (const compact::DecodedSegment& segment : scan.segments) {
+    for (std::uint32_t i = 0; i < segment.leaves; ++i) {
+      const compact::DecodedLeaf& leaf = scan.leaves[segment.first_leaf + i];
+      contents.leaves.push_back({segment.place.row + leaf.block.row,
+                                 segment.place.column + leaf.block.column, leaf.block.height,
+                                 leaf.block.width, leaf.layers, leaf.has_residual});
+    }
+  }
+  contents.layer.assign(scan.range.size(), 255);
+  for (std::size_t cell = 0; cell < scan.range.size(); ++cell) {
+    if (scan.leaf[cell] < 0 || scan.surface[cell] < 0) continue;
+    const auto first = scan.leaves[static_cast<std::size_t>(scan.leaf[cell])].first_surface;
+    contents.layer[cell] =
+        static_cast<std::uint8_t>(static_cast<std::uint32_t>(scan.surface[cell]) - first);
+  }
+}
+
+CompactContents contents_of(const compact::DecodedScan& scan, bool partition) {
+  CompactContents out;
+  out.step_m = metres(scan.parameters.step);
+  out.residual_step_m = metres(scan.parameters.residual_step);
+  out.root_cells = 1u << scan.parameters.root_log2;
+  out.smallest_leaf = scan.parameters.smallest_leaf;
+  out.bands = scan.parameters.bands;
+  out.sectors = scan.parameters.sectors;
+  out.heights = !scan.table.height.empty();
+  out.range_offsets = !scan.table.range_offset.empty();
+  out.statistics = statistics_of(scan);
+  if (partition) add_partition(scan, out);
+  return out;
+}
+
+/// Keeps the values of the returns `kept`.
+void keep_returns(std::vector<Attribute>& attributes, const std::vector<std::uint32_t>& kept,
+                  std::size_t returns) {
+  Cloud all;
+  all.positions.resize(returns);
+  all.attributes = std::move(attributes);
+  attributes = std::move(select(all, kept).attributes);
+}
+
+}  // namespace
+
+bool is_compact(const std::vector<Chunk>& chunks) {
+  return find_chunk(chunks, ChunkType::compact_parameters) != nullptr;
+}
+
+Result<CompactImage> decode_compact_image(ByteSpan bytes, const DecodeOptions& options) {
+  CURLIDAR_TRY_ASSIGN(chunks, read_container(bytes));
+  PartialContainer container;
+  container.complete = true;
+  container.chunks = std::move(chunks);
+  CURLIDAR_TRY_ASSIGN(scan, decode_scan(scan_chunks(container), {options.limits.max_cells},
+                                        {options.field_only, {}, false, options.threads}));
+  return CompactImage{std::move(scan.table),
+                      {scan.parameters.rows, scan.parameters.columns, std::move(scan.range)}};
+}
+
+Result<DecodedScan> decode_compact(const PartialContainer& container,
+                                   const DecodeOptions& options) {
+  const compact::ScanChunks chunks = scan_chunks(container);
+  const compact::ScanLimits limits{options.limits.max_cells};
+  const Chunk* attributes_chunk = find_chunk(container.chunks, ChunkType::attributes);
+  compact::ScanOptions scan_options;
+  scan_options.field_only = options.field_only;
+  scan_options.keep_nodes = options.partition;
+  scan_options.threads = options.threads;
+  std::optional<RegionFilter> filter;
+  if (options.region) {
+    CURLIDAR_TRY(check_region(*options.region));
+    CURLIDAR_TRY_ASSIGN(header, decode_scan_header(chunks, limits));
+    filter.emplace(*options.region, header.parameters);
+    if (filter->empty()) {
+      return Error{ErrorCode::invalid_argument,
+                   fmt::format("the region holds none of the scan's {} rings and {} columns",
+                               header.parameters.rows, header.parameters.columns)};
+    }
+    // Attributes are numbered by all returns, so that every mask must be known to find a part.
+    if (attributes_chunk == nullptr) scan_options.region = filter->bounds();
+  }
+  CURLIDAR_TRY_ASSIGN(scan, decode_scan(chunks, limits, scan_options));
+
+  DecodedScan out;
+  out.profile = Profile::compact;
+  for (const compact::Missing& missing : scan.missing) out.missing.push_back(to_string(missing));
+  const auto returns = static_cast<std::size_t>(
+      std::count_if(scan.range.begin(), scan.range.end(), [](auto range) { return range > 0; }));
+  if (attributes_chunk != nullptr && scan.missing.empty()) {
+    CURLIDAR_TRY_ASSIGN(attributes,
+                        read_attributes(*attributes_chunk, returns, options.limits.max_bytes));
+    out.attributes = std::move(attributes);
+  }
+  out.sensor = sensor_of(scan.table, scan);
+  out.coded_returns = returns;
+  out.compact = contents_of(scan, options.partition);
+  if (filter) {
+    const std::vector<std::uint32_t> kept = crop(scan, *filter);
+    out.coded_returns = kept.size();
+    keep_returns(out.attributes, kept, returns);
+  }
+  if (const Chunk* chunk = find_chunk(container.chunks, ChunkType::metadata)) {
+    CURLIDAR_TRY_ASSIGN(metadata, read_metadata(*chunk));
+    out.metadata = std::move(metadata);
+    const auto name = out.metadata.find(kSensorKey);
+    if (name != out.metadata.end()) out.sensor.name = name->second;
+  }
+  out.points = points_of(scan.table, {scan.parameters.rows, scan.parameters.columns, scan.range});
+  out.field = std::make_shared<CompactField>(std::move(scan));
+  return out;
+}
+
+}  // namespace curlidar

@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "codec/compact_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "base/try.hpp"
+#include "cloud/neighbours.hpp"
+#include "format/container.hpp"
+
+namespace curlidar {
+namespace {
+
+constexpr std::uint32_t kMostTrials = 14;
+/// Efforts from here on come nearer to the target, for files some 2 % smaller.
+constexpr std::uint32_t kPatientEffort = 7;
+
+/// Bits per return at some mean errors, on HDL-64E scans: where to start.
+struct RatePoint {
+  double error_m, bits;
+};
+constexpr std::array<RatePoint, 7> kUsualRates{{{0.0005, 6.8},
+                                                {0.002, 4.8},
+                                                {0.005, 3.3},
+                                                {0.01, 2.3},
+                                                {0.02, 1.4},
+                                                {0.05, 0.65},
+                                                {0.2, 0.3}}};
+
+double usual_error_at(double bits) {
+  std::size_t i = 0;
+  while (i + 2 < kUsualRates.size() && kUsualRates[i + 1].bits > bits) ++i;
+  const RatePoint &a = kUsualRates[i], &b = kUsualRates[i + 1];
+  const double share = std::log(bits / a.bits) / std::log(b.bits / a.bits);
+  return std::clamp(a.error_m * std::exp(share * std::log(b.error_m / a.error_m)), 1e-5, 10.0);
+}
+
+std::int64_t to_units(double metres) {
+  return std::max<std::int64_t>(1, std::llround(metres * compact::kRangeUnit));
+}
+
+compact::Steps steps_of_step(double metres) {
+  return compact::steps_for_step(static_cast<std::int32_t>(to_units(metres)));
+}
+
+Result<double> worse_direction(const CompactJob& job, const compact::Image& decoded) {
+  Cloud original, back;
+  for (const Vec3& p : job.cloud.positions) {
+    const double range = norm(p);
+    if (is_return(p) && range >= job.scan.min_range_m && range <= job.scan.max_range_m) {
+      original.positions.push_back(p);
+    }
+  }
+  back.positions = points_of(job.model.table, decoded);
+  double worse = 0;
+  for (const auto& [from, to] : {std::pair{&original, &back}, std::pair{&back, &original}}) {
+    CURLIDAR_TRY_ASSIGN(distances, distances_to_nearest(*from, *to, job.threads));
+    double sum = 0;
+    for (const double d : distances) sum += d;
+    worse = std::max(worse, sum / static_cast<double>(std::max<std::size_t>(distances.size(), 1)));
+  }
+  return worse;
+}
+
+/// The natural logarithm of what a trial reached over what is wanted.
+double miss_of(const CompactTrial& trial, const CompactSettings& settings) {
+  double reached = trial.errors.mean;
+  if (settings.target == CompactTarget::error_nn) reached = trial.error_nn_m;
+  if (settings.target == CompactTarget::bits_per_point) reached = trial.bits_per_point;
+  return std::log(std::max(reached, 1e-9) / settings.target_value);
+}
+
+/// One place where the search has looked.
+struct Probe {
+  double at = 0;    ///< logarithm of the scale
+  double miss = 0;  ///< see miss_of
+};
+
+/// Finds the scale at which a noisy, otherwise steady function misses by a little less than 0.
+class Secant {
+ public:
+  Secant(double slope, double aim) : slope_(slope), aim_(aim) {}
+
+  void add(const Probe& probe) {
+    std::optional<Probe>& side = probe.miss <= 0 ? inside_ : outside_;
+    if (last_) learn_slope(*last_, probe);
+    side = probe;
+    last_ = probe;
+  }
+  double next() const {
+    const double guess = last_->at + (aim_ - last_->miss) / slope_;
+    if (!inside_ || !outside_) return guess;
+    const double low = std::min(inside_->at, outside_->at);
+    const double high = std::max(inside_->at, outside_->at);
+    const double margin = 0.05 * (high - low);
+    return guess > low + margin && guess < high - margin ? guess : (low + high) / 2;
+  }
+
+ private:
+  /// Noise must not turn the slope round or make it flat.
+  void learn_slope(const Probe& a, const Probe& b) {
+    if (std::abs(b.at - a.at) < 1e-4) return;
+    const double seen = (b.miss - a.miss) / (b.at - a.at);
+    const double sign = slope_ > 0 ? 1 : -1;
+    slope_ = sign * std::clamp(seen * sign, 0.3, 1.5);
+  }
+
+  double slope_, aim_;
+  std::optional<Probe> inside_, outside_, last_;
+};
+
+Error out_of_reach(const CompactJob& job, double reached) {
+  const CompactSettings& s = job.settings;
+  if (s.target == CompactTarget::bits_per_point) {
+    return {ErrorCode::invalid_argument,
+            fmt::format("{:.3g} bits per point are out of reach: this scan takes {:.3g} at the "
+                        "coarsest; ask for more (--bits), or for an error",
+                        s.target_value, reached)};
+  }
+  const CellOffsets beside = cell_offsets(job.cloud, job.scan, job.model.table);
+  std::string reason = fmt::format("an error of {:.4g} m is out of reach: {:.4g} m is the least",
+                                   s.target_value, reached);
+  if (beside.across > beside.along && beside.across > 0.2 * s.target_value) {
+    const double wanted = job.scan.columns * beside.across / (0.5 * s.target_value);
+    const double columns = std::exp2(std::ceil(std::log2(wanted)));
+    reason += fmt::format(
+        " with {} columns, whose middles lie {:.3g} m beside the returns; take {} (--cols {}) or a "
+        "larger error",
+        job.scan.columns, beside.across, columns <= 65536 ? "more columns" : "the most columns",
+        static_cast<std::uint32_t>(std::min(columns, 65536.0)));
+  } else if (beside.along > 0.2 * s.target_value) {
+    reason += fmt::format(
+        ", because the returns lie {:.3g} m above or below their rings; take a larger error",
+        beside.along);
+  } else {
+    reason += "; ranges are coded to 1/65536 m; take a larger error";
+  }
+  return {ErrorCode::invalid_argument, reason};
+}
+
+/// The part of the wanted error that is left for ranges beside what directions take.
+double range_share(const CompactJob& job, double error_m) {
+  const double directions = own_errors(job.cloud, job.scan, job.model.table, job.model.image).mean;
+  return std::sqrt(std::max(error_m * error_m - directions * directions, 0.01 * error_m * error_m));
+}
+
+/// Errors below which steps_for_error adds residuals, and makes them fine.
+constexpr std::array<double, 2> kResidualKinds{0.029, 0.0044};
+
+/// Looks for the steps that reach a job's target.
+class TargetSearch {
+ public:
+  explicit TargetSearch(const CompactJob& job)
+      : job_(job),
+        bits_(job.settings.target == CompactTarget::bits_per_point),
+        good_(std::log(job.settings.effort >= kPatientEffort ? 0.985
+                       : bits_                               ? 0.97
+                                                             : 0.95)) {}
+
+  /// Searches over the scale of the steps for a mean error of `error_m`, which decides what kind of
+  /// coding is used.
+  Status run(double error_m) {
+    Secant secant(bits_ ? -0.75 : 0.75, good_ * 0.45);
+    double at = 0;
+    std::optional<compact::Steps> last;
+    for (std::uint32_t i = 0; i < kMostTrials; ++i) {
+      const compact::Steps steps = compact::steps_for_error(
+          to_units(error_m), std::max<std::int64_t>(1, std::llround(65536 * std::exp(at))));
+      if (last && last->step == steps.step && last->residual_step == steps.residual_step) break;
+      last = steps;
+      CURLIDAR_TRY_ASSIGN(miss, take(steps));
+      if (best_ && best_miss_ > good_) break;
+      if (bits_ && i < 2 && std::abs(miss) > 0.3) {
+        // Far off: the guess of the error was wrong, and with it the kind of coding.
+        error_m = std::clamp(error_m * std::exp(miss / 0.75), 1e-5, 100.0);
+        continue;
+      }
+      if (!bits_ && miss > 0 && at < kHopeless) break;
+      secant.add({at, miss});
+      at = std::clamp(secant.next(), -9.0, 9.0);
+    }
+    return {};
+  }
+
+  bool found() const { return best_.has_value(); }
+  double least_miss() const { return least_miss_; }
+  CompactTrial best() && {
+    best_->encodings = encodings_;
+    return *std::move(best_);
+  }
+
+ private:
+  /// Steps an eighth of the usual ones that do not reach an error will not get there.
+  static constexpr double kHopeless = -2.1;
+
+  /// Encodes once; gives how far that is from the target.
+  Result<double> take(const compact::Steps& steps) {
+    CURLIDAR_TRY_ASSIGN(trial, try_steps(job_, steps, job_.settings.effort));
+    const double miss = miss_of(trial, job_.settings);
+    least_miss_ = encodings_ == 0 ? miss : std::min(least_miss_, miss);
+    ++encodings_;
+    if (job_.progress) job_.progress("search", std::min(encodings_ / 8.0, 0.9));
+    if (miss <= 0 && (!best_ || miss > best_miss_)) {
+      best_ = std::move(trial);
+      best_miss_ = miss;
+    }
+    return miss;
+  }
+
+  const CompactJob& job_;
+  bool bits_;
+  double good_;  ///< misses above it, up to 0, are what is wanted
+  std::optional<CompactTrial> best_;
+  double best_miss_ = 0, least_miss_ = 0;
+  std::uint32_t encodings_ = 0;
+};
+
+}  // namespace
+
+Result<CompactTrial> try_steps(const CompactJob& job, const compact::Steps& steps,
+                               std::uint32_t effort) {
+  compact::ScanSettings settings;
+  settings.steps = steps;
+  settings.effort = effort;
+  settings.index = job.settings.index;
+  settings.threads = job.threads;
+  CURLIDAR_TRY_ASSIGN(encoded, encode_scan(job.model.image, job.model.table, settings));
+  CompactTrial trial;
+  trial.steps = steps;
+  trial.errors = own_errors(job.cloud, job.scan, job.model.table, encoded.decoded);
+  ContainerWriter writer;
+  for (const compact::ScanChunk& chunk : encoded.chunks) {
+    writer.add(static_cast<ChunkType>(chunk.part), chunk.payload);
+  }
+  trial.bits_per_point = 8.0 * static_cast<double>(std::move(writer).finish().size()) /
+                         static_cast<double>(job.scan.counts.kept);
+  if (job.settings.target == CompactTarget::error_nn) {
+    CURLIDAR_TRY_ASSIGN(distance, worse_direction(job, encoded.decoded));
+    trial.error_nn_m = distance;
+  }
+  trial.encoded = std::move(encoded);
+  return trial;
+}
+
+compact::Steps usual_steps(const CompactJob& job) {
+  const double error_m = first_error_guess(job.settings);
+  if (job.settings.target == CompactTarget::step) return steps_of_step(job.settings.target_value);
+  return compact::steps_for_error(to_units(
+      job.settings.target == CompactTarget::bits_per_point ? error_m : range_share(job, error_m)));
+}
+
+double cost_of(const CompactTrial& trial) {
+  return std::log(trial.bits_per_point) + 0.75 * std::log(trial.errors.mean);
+}
+
+double first_error_guess(const CompactSettings& settings) {
+  switch (settings.target) {
+    case CompactTarget::error:
+      return settings.target_value;
+    case CompactTarget::error_nn:
+      return 1.2 * settings.target_value;
+    case CompactTarget::step:
+      return settings.target_value / 6;
+    case CompactTarget::bits_per_point:
+      return usual_error_at(settings.target_value);
+  }
+  return settings.target_value;
+}
+
+Result<CompactTrial> search_target(const CompactJob& job) {
+  const CompactSettings& s = job.settings;
+  if (s.target == CompactTarget::step) {
+    return try_steps(job, steps_of_step(s.target_value), s.effort);
+  }
+  TargetSearch search(job);
+  CURLIDAR_TRY(search.run(s.target == CompactTarget::bits_per_point
+                              ? first_error_guess(s)
+                              : range_share(job, first_error_guess(s))));
+  // Little effort may leave surfaces that no step brings near enough: residuals always do.
+  for (const double error_m : kResidualKinds) {
+    if (search.found() || s.target == CompactTarget::bits_per_point) break;
+    if (first_error_guess(s) > error_m) CURLIDAR_TRY(search.run(error_m));
+  }
+  if (!search.found()) return out_of_reach(job, s.target_value * std::exp(search.least_miss()));
+  return std::move(search).best();
+}
+
+}  // namespace curlidar

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The steps at which a compact file reaches its target.
+#pragma once
+
+#include <cstdint>
+
+#include "codec/compact_grid.hpp"
+#include "codec/compact_model.hpp"
+#include "compact/scan_encoder.hpp"
+#include "curlidar/codec.hpp"
+
+namespace curlidar {
+
+/// What is being coded; everything outlives the search.
+struct CompactJob {
+  const Cloud& cloud;
+  const GriddedScan& scan;
+  const CompactModel& model;
+  const CompactSettings& settings;
+  std::size_t threads = 1;
+  ProgressCallback progress{};
+};
+
+/// One encoding and what it gave.
+struct CompactTrial {
+  compact::Steps steps;
+  compact::EncodedScan encoded;
+  OwnErrors errors;
+  double error_nn_m = 0;        ///< measured only if it is the target
+  double bits_per_point = 0;    ///< of a file without attributes and metadata
+  std::uint32_t encodings = 1;  ///< tried until this one was found
+};
+
+/// Encodes once.
+Result<CompactTrial> try_steps(const CompactJob& job, const compact::Steps& steps,
+                               std::uint32_t effort);
+
+/// The steps that the search starts from.
+compact::Steps usual_steps(const CompactJob& job);
+
+/// A logarithm to compare encodings of about one error by: a percent less error is worth 3/4 of a
+/// percent of bits.
+double cost_of(const CompactTrial& trial);
+
+/// The mean range error at which to look for the target first.
+double first_error_guess(const CompactSettings& settings);
+
+/// Encodes at the target: what is reached is at most the target's value, and more than 95 % of it
+/// (97 % of bits). The search is a secant on logarithms, the same on every machine. Errors:
+/// invalid_argument (the target is out of reach; says what would help).
+Result<CompactTrial> search_target(const CompactJob& job);
+
+}  // namespace curlidar
