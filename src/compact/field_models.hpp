@@ -143,12 +143,13 @@ class MixSink {
  public:
   static constexpr bool kDecodes = Coder::kDecodes;
 
-  MixSink(Coder& coder, FieldModels& models) : coder_(coder), models_(models) {}
+  MixSink(Coder& coder, FieldModels& models, std::int32_t rate = kFieldMixRate)
+      : coder_(coder), models_(models), rate_(rate) {}
 
   bool bit(const Contexts& c, bool value) {
     std::array<BitModel*, kFieldInputs> inputs;
     for (std::size_t i = 0; i < kFieldInputs; ++i) inputs[i] = &models_.models[c.model[i]];
-    return code_bit(coder_, inputs, models_.weights[c.mixer], kFieldMixRate, kFieldLimit, value);
+    return code_bit(coder_, inputs, models_.weights[c.mixer], rate_, kFieldLimit, value);
   }
   /// A bit that nothing tells about.
   bool plain(FieldPart, bool value) { return coder_.code(32768, value); }
@@ -156,6 +157,7 @@ class MixSink {
  private:
   Coder& coder_;
   FieldModels& models_;
+  std::int32_t rate_;
 };
 
 }  // namespace curlidar::compact
