@@ -88,6 +88,11 @@ class LeafSearch {
   }
 
   void consider(const LeafCode& leaf, const std::vector<FittedLayer>& layers);
+  std::int64_t choose_labels(std::int64_t cost, bool residual,
+                             const std::vector<FittedLayer>& layers,
+                             std::vector<std::uint8_t>& labels);
+  std::int64_t cost_of_one(const LayerCode& layer);
+  void consider_one(const LayerCode& layer);
   void try_one_layer();
   void try_two_layers();
   void try_another_layer(std::uint32_t layers);
@@ -106,44 +111,18 @@ class LeafSearch {
   std::vector<std::uint8_t> best_labels_;
 };
 
-/// Takes the leaf if it is the best so far; labels are chosen one after the other.
+/// Takes the leaf of several layers if it is the best so far.
 void LeafSearch::consider(const LeafCode& leaf, const std::vector<FittedLayer>& layers) {
   sink_.clear();
   LeafCode copy = leaf;
   code_leaf(sink_, context_, static_cast<std::uint32_t>(samples_.size()), copy);
   const std::int64_t header = sink_.cost() * settings_.lambda;
-  if (header >= best_) return;
   const bool has_residual = !settings_.residual_costs.empty();
   for (const bool residual : {false, true}) {
     if (residual && !has_residual) break;
-    std::int64_t cost = header;
-    if (has_residual) cost += (residual ? 384 : 192) * settings_.lambda;
-    std::vector<std::uint8_t> labels;
-    if (leaf.layers == 1) {
-      for (std::size_t i = 0; i < samples_.size() && cost < best_; ++i) {
-        cost += error_cost(error(i, layers[0].ranges[i]), residual);
-      }
-    } else {
-      labels.resize(samples_.size());
-      LabelContexts contexts(state_, context_.block, leaf.layers);
-      for (std::size_t i = 0; i < samples_.size() && cost < best_; ++i) {
-        LayerRanges ranges{};
-        for (std::uint32_t k = 0; k < leaf.layers; ++k) ranges[k] = layers[k].ranges[i];
-        const LabelContext context = contexts.at(samples_.cells[i], ranges);
-        std::int64_t least = kNever;
-        for (std::uint32_t k = 0; k < leaf.layers; ++k) {
-          sink_.clear();
-          code_label(sink_, context, leaf.layers, k);
-          const std::int64_t j =
-              error_cost(error(i, ranges[k]), residual) + sink_.cost() * settings_.lambda;
-          if (j >= least) continue;
-          least = j;
-          labels[i] = static_cast<std::uint8_t>(k);
-        }
-        cost += least;
-        contexts.set(samples_.cells[i], labels[i]);
-      }
-    }
+    std::vector<std::uint8_t> labels(samples_.size());
+    const std::int64_t flag = has_residual ? (residual ? 384 : 192) * settings_.lambda : 0;
+    const std::int64_t cost = choose_labels(header + flag, residual, layers, labels);
     if (cost >= best_) continue;
     best_ = cost;
     best_leaf_ = leaf;
@@ -151,33 +130,86 @@ void LeafSearch::consider(const LeafCode& leaf, const std::vector<FittedLayer>& 
   }
 }
 
+/// Labels chosen one after the other; `cost` and what they cost, at least best_ if that is reached.
+std::int64_t LeafSearch::choose_labels(std::int64_t cost, bool residual,
+                                       const std::vector<FittedLayer>& layers,
+                                       std::vector<std::uint8_t>& labels) {
+  const auto count = static_cast<std::uint32_t>(layers.size());
+  LabelContexts contexts(state_, context_.block, count);
+  for (std::size_t i = 0; i < samples_.size() && cost < best_; ++i) {
+    LayerRanges ranges{};
+    for (std::uint32_t k = 0; k < count; ++k) ranges[k] = layers[k].ranges[i];
+    const LabelContext context = contexts.at(samples_.cells[i], ranges);
+    std::int64_t least = kNever;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      sink_.clear();
+      code_label(sink_, context, count, k);
+      const std::int64_t j =
+          error_cost(error(i, ranges[k]), residual) + sink_.cost() * settings_.lambda;
+      if (j >= least) continue;
+      least = j;
+      labels[i] = static_cast<std::uint8_t>(k);
+    }
+    cost += least;
+    contexts.set(samples_.cells[i], labels[i]);
+  }
+  return cost;
+}
+
+/// J of the leaf with this one layer; stops counting where the best so far is reached.
+std::int64_t LeafSearch::cost_of_one(const LayerCode& layer) {
+  LeafCode leaf;
+  leaf.layer[0] = layer;
+  sink_.clear();
+  code_leaf(sink_, context_, static_cast<std::uint32_t>(samples_.size()), leaf);
+  const std::int64_t header = sink_.cost() * settings_.lambda;
+  const bool has_residual = !settings_.residual_costs.empty();
+  std::int64_t plain = header + (has_residual ? 192 * settings_.lambda : 0);
+  std::int64_t refined = has_residual ? header + 384 * settings_.lambda : kNever;
+  const Surface surface = surface_of(state_, context_, frame_, layer);
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    if (plain >= best_ && refined >= best_) return best_;
+    const std::int64_t e = error(
+        i, static_cast<std::int32_t>(surface.range_at(frame_, samples_.directions[i])));
+    plain += error_cost(e, false);
+    if (has_residual) refined += error_cost(e, true);
+  }
+  return std::min(plain, refined);
+}
+
+void LeafSearch::consider_one(const LayerCode& layer) {
+  const std::int64_t cost = cost_of_one(layer);
+  if (cost >= best_) return;
+  best_ = cost;
+  best_leaf_ = {};
+  best_leaf_.layer[0] = layer;
+  best_labels_.clear();
+}
+
 void LeafSearch::try_one_layer() {
   const Members all = all_members();
   const std::uint32_t most = most_functions(all.size());
-  LeafCode leaf;
   LayerFit plain(state_, context_, frame_, samples_, all, {});
   for (std::uint32_t parent = 0; parent <= context_.parents.count; ++parent) {
     for (std::uint32_t functions = parent == 0 ? 1 : 0; functions <= most; ++functions) {
       if (parent > settings_.fitted_parents && functions > 0) break;
       auto layer = plain.fit(parent, functions);
       if (!layer) continue;
-      const std::uint32_t passes = functions >= 2 ? settings_.reweighted_passes : 0;
-      for (std::uint32_t pass = 0;; ++pass) {
-        leaf.layer[0] = *layer;
-        std::vector<std::int32_t> ranges = ranges_of(*layer);
+      consider_one(*layer);
+      if (functions < 2) continue;
+      for (std::uint32_t pass = 0; pass < settings_.reweighted_passes; ++pass) {
+        const std::vector<std::int32_t> ranges = ranges_of(*layer);
         std::vector<double> extra;
-        if (pass < passes) {
-          extra.reserve(all.size());
-          for (std::size_t i = 0; i < all.size(); ++i) {
-            extra.push_back(1.0 / static_cast<double>(std::max<std::int64_t>(
-                                      state_.settings.step / 2 + 1, error(i, ranges[i]))));
-          }
+        extra.reserve(all.size());
+        for (std::size_t i = 0; i < all.size(); ++i) {
+          extra.push_back(1.0 / static_cast<double>(std::max<std::int64_t>(
+                                    state_.settings.step / 2 + 1, error(i, ranges[i]))));
         }
-        consider(leaf, {{*layer, std::move(ranges)}});
-        if (pass >= passes) break;
-        auto next = LayerFit(state_, context_, frame_, samples_, all, extra).fit(parent, functions);
-        if (!next) break;
+        const auto next =
+            LayerFit(state_, context_, frame_, samples_, all, extra).fit(parent, functions);
+        if (!next || (next->q == layer->q && next->range_steps == layer->range_steps)) break;
         layer = next;
+        consider_one(*layer);
       }
     }
   }
@@ -201,6 +233,7 @@ std::optional<FittedLayer> LeafSearch::best_layer(const Members& members, std::u
       if (cost >= least) continue;
       const Surface surface = surface_of(state_, context_, frame_, *code);
       for (const std::uint32_t i : members) {
+        if (cost >= least) break;
         cost +=
             256 *
             error(i, static_cast<std::int32_t>(surface.range_at(frame_, samples_.directions[i])));
