@@ -42,10 +42,14 @@ std::int32_t step_of(std::int64_t mean_error, std::int64_t factor_per_mille,
       std::clamp<std::int64_t>(unscaled / 1000 * scale >> 16, 1, kMaxStep));
 }
 
-/// Usual bits of q under a residual layer, 1/256 bit: zero .5, one 2.5, then Exp-Golomb.
+/// What a bit of the residual layer is worth against one of the field: residuals are chosen one by
+/// one with the costs they have, and save less elsewhere.
+constexpr std::int64_t kResidualBitPerMille = 1180;
+
+/// Usual bits of q under a residual layer, 1/256 bit: zero 1.6, one 2.2, then Exp-Golomb.
 std::int64_t usual_bits(std::int64_t q) {
-  if (q == 0) return 128;
-  return 640 + 512 * (std::bit_width(static_cast<std::uint64_t>(q)) - 1);
+  if (q == 0) return 410;
+  return 563 + 512 * (std::bit_width(static_cast<std::uint64_t>(q)) - 1);
 }
 
 }  // namespace
@@ -68,7 +72,7 @@ Effort search_settings(std::uint32_t effort, std::int32_t step, std::int32_t res
   };
   s.lambda = lambda_of(step);
   if (residual_step == 0) return out;
-  out.residual_lambda = lambda_of(residual_step);
+  out.residual_lambda = lambda_of(residual_step) * kResidualBitPerMille / 1000;
   out.residual_costs = residual_cost_table(residual_step, out.residual_lambda);
   // Under much finer residuals, which predict from their neighbours, the field need not know.
   if (step > kCoarseRatio * residual_step) return out;

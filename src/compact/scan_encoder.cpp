@@ -47,7 +47,7 @@ std::uint32_t default_sectors(const Image& image, const Steps& steps) {
   const std::uint64_t bits_q4 =
       static_cast<std::uint64_t>(std::clamp<std::int64_t>(20 - octaves, 1, 16)) * 8;
   const std::uint64_t bytes = count_returns(image) * bits_q4 / 128;
-  constexpr std::uint64_t kBytesPerSegment = 4000;
+  constexpr std::uint64_t kBytesPerSegment = 6000;
   const std::uint64_t most = std::max<std::uint64_t>(image.columns / 128, 1);
   return static_cast<std::uint32_t>(
       std::clamp<std::uint64_t>(bytes / kBytesPerSegment, 1, std::min<std::uint64_t>(most, 16)));
