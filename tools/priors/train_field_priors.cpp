@@ -211,9 +211,13 @@ int main(int argc, char** argv) {
   for (const std::int32_t weight : priors.weights) weights.push_back(weight / 16);
   const std::string folder = argv[2];
   const bool written =
-      write_text(folder + "/field.txt",
-                 training::format_states(priors.states, "First states of the field's models")) &&
+      write_text(
+          folder + "/field.txt",
+          training::format_states(
+              priors.states,
+              "# First states of the field's models, kind by kind: see the specification.\n")) &&
       write_text(folder + "/field_mix.txt",
-                 training::format_weights(weights, "First weights of the field's mixes"));
+                 training::format_weights(
+                     weights, "# First weights of the field's mixes, four to a mix.\n"));
   return written ? 0 : 1;
 }
