@@ -29,7 +29,7 @@ constexpr std::array<EffortRow, kMostEffort> kEfforts = {{
 }};
 
 constexpr std::int32_t kNoResidualFrom = 3 * kRangeUnit / 100;
-constexpr std::int32_t kCoarseFieldBelow = 9 * kRangeUnit / 2000;
+constexpr std::int32_t kCoarseFieldBelow = 9 * kRangeUnit / 1000;
 constexpr std::int32_t kCoarseStep = kRangeUnit / 2;
 constexpr std::int64_t kCoarseRatio = 8;
 constexpr std::int64_t kCostEntries = 8 * 4096;
@@ -102,15 +102,15 @@ std::vector<std::int64_t> residual_cost_table(std::int32_t residual_step, std::i
 Steps steps_for_error(std::int64_t mean_error, std::int64_t scale_q16) {
   Steps steps;
   if (mean_error >= kNoResidualFrom) {
-    steps.step = step_of(mean_error, 2500, scale_q16);
+    steps.step = step_of(mean_error, 5500, scale_q16);
     return steps;
   }
   if (mean_error >= kCoarseFieldBelow) {
-    steps.step = steps.residual_step = step_of(mean_error, 2500, scale_q16);
+    steps.step = steps.residual_step = step_of(mean_error, 4400, scale_q16);
     return steps;
   }
   steps.step = kCoarseStep;
-  steps.residual_step = step_of(mean_error, 3000, scale_q16);
+  steps.residual_step = step_of(mean_error, 3700, scale_q16);
   return steps;
 }
 

@@ -45,7 +45,7 @@ struct Steps {
 
 /// Steps that give about the wanted mean error (Q16 metres), times `scale_q16` / 65536: the codec
 /// searches over the scale, in which the reached error rises monotonically but for noise. Three
-/// regimes, chosen by the wanted error alone: from 3 cm on a field without residuals, from 4.5 mm
+/// regimes, chosen by the wanted error alone: from 3 cm on a field without residuals, from 9 mm
 /// to 3 cm field and residuals of one step, below a coarse field under fine residuals.
 Steps steps_for_error(std::int64_t mean_error, std::int64_t scale_q16 = 65536);
 

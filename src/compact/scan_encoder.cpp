@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -38,19 +39,17 @@ std::uint64_t count_returns(const Image& image) {
   return returns;
 }
 
-/// As many sectors as cost about 2 % of the file by what they were measured to cost.
-std::uint32_t default_sectors(const Image& image, const Steps& steps) {
-  const std::int64_t finest =
-      steps.residual_step > 0 ? std::min(steps.step, steps.residual_step) : steps.step;
-  // Bits a return fall from 8 to .5 as the step grows, by about one an octave.
-  const std::int64_t octaves = std::bit_width(static_cast<std::uint64_t>(finest));
-  const std::uint64_t bits_q4 =
-      static_cast<std::uint64_t>(std::clamp<std::int64_t>(20 - octaves, 1, 16)) * 8;
-  const std::uint64_t bytes = count_returns(image) * bits_q4 / 128;
-  constexpr std::uint64_t kBytesPerSegment = 6000;
-  const std::uint64_t most = std::max<std::uint64_t>(image.columns / 128, 1);
-  return static_cast<std::uint32_t>(
-      std::clamp<std::uint64_t>(bytes / kBytesPerSegment, 1, std::min<std::uint64_t>(most, 16)));
+/// A further segment costs 1 % of a file and some 40 bytes (contexts learn anew, surfaces lose
+/// their left neighbours), so that one for every 12 kB stays within 2 %.
+std::uint32_t default_sectors(const Image& image, const ScanParameters& p) {
+  const std::int32_t finest = p.residual_step > 0 ? std::min(p.step, p.residual_step) : p.step;
+  // Bits a return: one more for each halving of the step, roughly; 3 at 5 cm.
+  const int width = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(finest)));
+  const int bits = std::max(15 - width, 1);
+  const std::uint64_t bytes = count_returns(image) * static_cast<std::uint64_t>(bits) / 8;
+  constexpr std::uint64_t kBytesPerSegment = 12000;
+  const std::uint64_t most = std::clamp(image.columns / 128, 1u, 16u);
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(bytes / kBytesPerSegment, 1, most));
 }
 
 ScanParameters parameters_for(const Image& image, const ScanSettings& settings) {
@@ -65,9 +64,8 @@ ScanParameters parameters_for(const Image& image, const ScanSettings& settings) 
   p.root_log2 = settings.steps.root_log2;
   p.smallest_leaf = settings.steps.smallest_leaf;
   p.bands = std::max(settings.bands, 1u);
-  p.sectors = settings.sectors > 0 ? settings.sectors
-              : settings.index     ? default_sectors(image, settings.steps)
-                                   : 1;
+  p.sectors = settings.sectors;
+  if (p.sectors == 0) p.sectors = settings.index ? default_sectors(image, p) : 1;
   return p;
 }
 

@@ -19,6 +19,7 @@ bool digest_file(const std::string& path) {
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   curlidar::test::Digest digest;
   curlidar::test::digest_container(digest, std::as_bytes(std::span(text)));
+  curlidar::test::digest_scan_file(digest, std::as_bytes(std::span(text)));
   digest.print(path.substr(path.find_last_of('/') + 1).c_str());
   return true;
 }

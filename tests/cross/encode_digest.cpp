@@ -2,6 +2,7 @@
 // encode_digest: prints digests of what encoding writes, and of what decoding computes, for
 // comparison between compilers and their optimisation.
 #include "cross/decode_sections.hpp"
+#include "support/compact_scans.hpp"
 
 namespace curlidar::test {
 namespace {
@@ -30,12 +31,33 @@ void digest_container_encoding() {
   digest.print("container.write");
 }
 
+/// A street at several efforts and in all three regimes of steps.
+void digest_scan_encoding() {
+  const CompactScan scan = integer_street(24, 144);
+  for (const std::uint32_t effort : {1u, 4u, 9u}) {
+    for (const std::int64_t error_mm : {50, 15, 2}) {
+      compact::ScanSettings settings;
+      settings.steps = compact::steps_for_error(error_mm * compact::kRangeUnit / 1000);
+      settings.effort = effort;
+      settings.sectors = 2;
+      const auto written = compact::encode_scan(scan.image, scan.table, settings);
+      Digest digest;
+      if (written) {
+        for (const compact::ScanChunk& chunk : written->chunks) digest.add(chunk.payload);
+        digest_scan_file(digest, file_of(written->chunks));
+      }
+      digest.print("scan.encode");
+    }
+  }
+}
+
 }  // namespace
 }  // namespace curlidar::test
 
 int main() {
   curlidar::test::digest_entropy_encoding();
   curlidar::test::digest_container_encoding();
+  curlidar::test::digest_scan_encoding();
   curlidar::test::digest_decoding();
   return 0;
 }
