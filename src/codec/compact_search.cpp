@@ -150,7 +150,9 @@ double range_share(const CompactJob& job, double error_m) {
 }
 
 /// Errors below which steps_for_error adds residuals, and makes them fine.
-constexpr std::array<double, 2> kResidualKinds{0.029, 0.0044};
+constexpr std::array<double, 2> kResidualKinds{
+    0.97 * static_cast<double>(compact::kFieldAloneFrom) / compact::kRangeUnit,
+    0.97 * static_cast<double>(compact::kCoarseFieldBelow) / compact::kRangeUnit};
 
 /// Looks for the steps that reach a job's target.
 class TargetSearch {

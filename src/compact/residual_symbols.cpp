@@ -26,7 +26,7 @@ constexpr auto kTail = make_tail();
 /// Probability, in 1/2^32, of less than x, in 1/256 of the logistic distribution's scale.
 std::uint64_t logistic_below(std::int64_t x) {
   const auto size = static_cast<std::uint64_t>(std::min<std::int64_t>(std::abs(x), 12 * 256));
-  const std::size_t i = size >> 3;
+  const auto i = static_cast<std::size_t>(size >> 3);
   const std::uint64_t part = size & 7;
   const std::uint64_t tail = (kTail[i] * (8 - part) + kTail[i + 1] * part) >> 3;
   return x < 0 ? tail : (std::uint64_t{1} << 32) - tail;

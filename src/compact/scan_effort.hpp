@@ -43,10 +43,15 @@ struct Steps {
   std::uint32_t smallest_leaf = 8;
 };
 
+/// From this mean error on (Q16 metres) a field alone is the best; below the other one, a coarse
+/// field under fine residuals.
+inline constexpr std::int64_t kFieldAloneFrom = 3 * kRangeUnit / 100;
+inline constexpr std::int64_t kCoarseFieldBelow = 9 * kRangeUnit / 1000;
+
 /// Steps that give about the wanted mean error (Q16 metres), times `scale_q16` / 65536: the codec
 /// searches over the scale, in which the reached error rises monotonically but for noise. Three
-/// regimes, chosen by the wanted error alone: from 3 cm on a field without residuals, from 9 mm
-/// to 3 cm field and residuals of one step, below a coarse field under fine residuals.
+/// regimes, chosen by the wanted error alone: a field without residuals, field and residuals of one
+/// step, a coarse field under fine residuals.
 Steps steps_for_error(std::int64_t mean_error, std::int64_t scale_q16 = 65536);
 
 /// Steps for a given D: no residual layer.
