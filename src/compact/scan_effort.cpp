@@ -37,7 +37,7 @@ std::int32_t step_of(std::int64_t mean_error, std::int64_t factor_per_mille,
   const std::int64_t unscaled = std::min<std::int64_t>(mean_error, kMaxRange) * factor_per_mille;
   const std::int64_t scale = std::clamp<std::int64_t>(scale_q16, 1, 1 << 26);
   return static_cast<std::int32_t>(
-      std::clamp<std::int64_t>(unscaled / 1000 * scale >> 16, 1, kMaxStep));
+      std::clamp<std::int64_t>(mul_shift(unscaled, scale, 16) / 1000, 1, kMaxStep));
 }
 
 /// What a bit of the residual layer is worth against one of the field: residuals are chosen one by

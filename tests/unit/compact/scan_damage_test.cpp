@@ -15,8 +15,8 @@ using test::CompactScan;
 using testing::HasSubstr;
 
 /// Field and residuals in 2 x 2 segments, small enough to try everything.
-std::vector<std::byte> small_file(std::int32_t residual_step = 800) {
-  const CompactScan scan = test::integer_street(18, 40);
+std::vector<std::byte> small_file(std::int32_t residual_step = 800, std::uint32_t columns = 40) {
+  const CompactScan scan = test::integer_street(18, columns);
   ScanSettings settings;
   settings.steps = {3000, residual_step, 0, 3, 8};
   settings.effort = 2;
@@ -72,19 +72,19 @@ TEST(ScanDamage, ACutFileDecodesUpToTheCut) {
 }
 
 TEST(ScanDamage, MissingPartsAreNamed) {
-  const std::vector<std::byte> file = small_file();
+  const std::vector<std::byte> file = small_file(800, 400);
   const auto container = read_container(file);
   ASSERT_TRUE(container);
   const std::vector<Chunk> fields = find_chunks(*container, ChunkType::compact_field);
-  const std::size_t size = fields[2].offset + fields[2].payload.size() - 1;
+  const std::size_t size = fields[2].offset + fields[2].payload.size() / 2;
   const auto cut = decode_file(ByteSpan(file).first(size));
   ASSERT_TRUE(cut);
   std::vector<std::string> names;
   for (const Missing& missing : cut->missing) names.push_back(to_string(missing));
   ASSERT_EQ(names.size(), 2u + 2 + 2);
-  EXPECT_EQ(names[0], "the residual layer of rows 0..8, columns 0..19");
-  EXPECT_THAT(names[2], testing::StartsWith("the field of rows 9..17, columns 0..19 from root"));
-  EXPECT_EQ(names[4], "the field of rows 9..17, columns 20..39");
+  EXPECT_EQ(names[0], "the residual layer of rows 0..8, columns 0..199");
+  EXPECT_THAT(names[2], testing::StartsWith("the field of rows 9..17, columns 0..199 from root"));
+  EXPECT_EQ(names[4], "the field of rows 9..17, columns 200..399");
 }
 
 TEST(ScanDamage, SegmentsTooManyOrTooFewAreRefused) {
