@@ -19,6 +19,7 @@ constexpr const char* kFooter = R"(Examples:
   curlidar render scan.bin --view range-image --colour range -o image.png
   curlidar render scan.curl --rows 8 --view birds-eye --extent 30
   curlidar render scan.curl --colour error --reference scan.pcd --max-value 0.2
+  curlidar render scan.curl --view partition -o blocks.png   what the compact codec made of it
   curlidar render scans/*.bin -o pictures/ --size 640x480)";
 
 struct Options {
@@ -43,6 +44,10 @@ void parse_size(const std::string& text, RenderSettings& settings) {
   }
 }
 
+bool shows_partition(const RenderSettings& settings) {
+  return settings.view == View::partition || settings.view == View::layers;
+}
+
 RenderSettings render_settings(const Options& options) {
   RenderSettings settings = options.render;
   settings.view = need_option(view_by_name(options.view));
@@ -51,7 +56,40 @@ RenderSettings render_settings(const Options& options) {
   if ((settings.colour == ColourBy::error) != !options.reference.empty()) {
     usage_error("--colour error and --reference CLOUD go together");
   }
+  if (shows_partition(settings)) {
+    // Cells are what these views show, coloured by range.
+    if (settings.colour == ColourBy::error) {
+      usage_error(fmt::format("--view {} does not show errors", options.view));
+    }
+    settings.colour = ColourBy::range;
+  }
   return settings;
+}
+
+/// The picture of a compact file's blocks and layers.
+Image partition_picture(const std::string& path, const RenderSettings& settings,
+                        std::size_t threads, std::size_t& points) {
+  DecodeOptions decoding;
+  decoding.partition = true;
+  decoding.threads = threads;
+  const DecodedScan scan = load_curl(path, decoding);
+  if (!scan.compact) {
+    throw Failure(
+        {ErrorCode::invalid_argument,
+         fmt::format("--view partition and layers show files of the compact profile; this "
+                     "one is of profile {}",
+                     to_string(scan.profile))},
+        kExitInput);
+  }
+  std::vector<PartitionBlock> blocks;
+  for (const CompactLeaf& leaf : scan.compact->leaves) {
+    blocks.push_back({leaf.row, leaf.column, leaf.rows, leaf.columns, leaf.layers});
+  }
+  ReconstructSettings plain;
+  plain.organised = true;
+  const Cloud cloud = need(reconstruct(scan, plain));
+  points = scan.coded_returns;
+  return need(render_partition(cloud, blocks, scan.compact->layer, settings));
 }
 
 int run(const Options& options) {
@@ -66,15 +104,21 @@ int run(const Options& options) {
   ReconstructSettings reconstruct_settings = options.reconstruct;
   reconstruct_settings.threads = options.common.threads;
   return for_each_job(options.common, jobs, [&](const Job& job, const ProgressCallback& progress) {
-    const Cloud cloud = load_cloud(job.input, format, reconstruct_settings);
-    progress("draw", 0.5);
-    std::vector<double> values;
-    if (settings.colour == ColourBy::error) {
-      values = need(nearest_distances(cloud, reference, options.common.threads));
+    Image image;
+    std::size_t points = 0;
+    if (shows_partition(settings)) {
+      image = partition_picture(job.input, settings, options.common.threads, points);
+    } else {
+      const Cloud cloud = load_cloud(job.input, format, reconstruct_settings);
+      progress("draw", 0.5);
+      std::vector<double> values;
+      if (settings.colour == ColourBy::error) {
+        values = need(nearest_distances(cloud, reference, options.common.threads));
+      }
+      image = need(render(cloud, settings, values));
+      points = count_returns(cloud);
     }
-    const Image image = need(render(cloud, settings, values));
     need(write_png(job.output, image));
-    const std::size_t points = count_returns(cloud);
     return Outcome{{{"points", points}, {"width", image.width}, {"height", image.height}},
                    fmt::format("{} -> {}  {} points, {} x {} pixels\n", job.input, job.output,
                                count_text(points), image.width, image.height)};
@@ -82,7 +126,9 @@ int run(const Options& options) {
 }
 
 void add_picture_options(CLI::App& app, Options& options) {
-  app.add_option("--view", options.view, "range-image, birds-eye or perspective")
+  app.add_option(
+         "--view", options.view,
+         "range-image, birds-eye, perspective, or of a compact .curl file partition or layers")
       ->capture_default_str();
   app.add_option("--colour,--color", options.colour, "range, height, intensity or error")
       ->capture_default_str();

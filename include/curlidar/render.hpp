@@ -19,9 +19,16 @@ struct Image {
   std::vector<std::uint8_t> rgb;  ///< width * height * 3
 };
 
-enum class View { range_image, birds_eye, perspective };
+enum class View {
+  range_image,
+  birds_eye,
+  perspective,
+  partition,  ///< of a compact file, over its range image: see render_partition
+  layers,     ///< the same, each return in the colour of its layer
+};
 enum class ColourBy { range, height, intensity, error };
-Result<View> view_by_name(std::string_view name);           ///< "range-image", "birds-eye", "perspective"
+/// "range-image", "birds-eye", "perspective", "partition", "layers"
+Result<View> view_by_name(std::string_view name);
 Result<ColourBy> colour_by_name(std::string_view name);     ///< "range", "height", "intensity", "error"
 
 struct RenderSettings {
@@ -47,6 +54,21 @@ struct RenderSettings {
 /// Deterministic. About 0.2 s for 120 k points and a million pixels.
 Result<Image> render(const Cloud& cloud, const RenderSettings& settings,
                      const std::vector<double>& values = {});
+
+/// A block of an organised cloud's cells and the number of surfaces in it.
+struct PartitionBlock {
+  std::uint32_t row = 0, column = 0, rows = 0, columns = 0;
+  std::uint32_t layers = 1;
+};
+
+/// Draws what a codec did to an organised cloud, whose azimuth grows from column to column: the
+/// blocks' outlines by their layers and, behind them, ranges (View::partition) or the layer of each
+/// return (View::layers). `layer` holds one number for each slot. The turn is cut into stripes, from
+/// the back by the left to the front and on, so that a cell is some pixels wide; the height follows.
+/// Errors: another view, a cloud that is not organised, sizes that do not match.
+Result<Image> render_partition(const Cloud& grid, const std::vector<PartitionBlock>& blocks,
+                               const std::vector<std::uint8_t>& layer,
+                               const RenderSettings& settings);
 
 /// Pictures of equal height side by side with a thin gap.
 Image side_by_side(const std::vector<Image>& images);

@@ -62,10 +62,12 @@ Result<Image> render_below(Cloud cloud, RenderSettings settings,
 }  // namespace
 
 Result<View> view_by_name(std::string_view name) {
-  return by_name<View, 3>(name, "view",
+  return by_name<View, 5>(name, "view",
                           {{{"range-image", View::range_image},
                             {"birds-eye", View::birds_eye},
-                            {"perspective", View::perspective}}});
+                            {"perspective", View::perspective},
+                            {"partition", View::partition},
+                            {"layers", View::layers}}});
 }
 
 Result<ColourBy> colour_by_name(std::string_view name) {
@@ -79,6 +81,10 @@ Result<ColourBy> colour_by_name(std::string_view name) {
 Result<Image> render(const Cloud& cloud, const RenderSettings& settings,
                      const std::vector<double>& values) {
   CURLIDAR_TRY(check(settings));
+  if (settings.view == View::partition || settings.view == View::layers) {
+    return Error{ErrorCode::invalid_argument,
+                 "render: partition and layers are views of compact .curl files, not of clouds"};
+  }
   if (settings.clip_above_m) return render_below(cloud, settings, values);
   CURLIDAR_TRY_ASSIGN(scale, drawing::make_scale(cloud, settings, values));
   switch (settings.view) {
@@ -88,10 +94,27 @@ Result<Image> render(const Cloud& cloud, const RenderSettings& settings,
     }
     case View::birds_eye:
       return drawing::draw_birds_eye(cloud, settings, scale).image();
-    case View::perspective:
+    default:
       break;
   }
   return drawing::draw_perspective(cloud, settings, scale).image();
+}
+
+Result<Image> render_partition(const Cloud& grid, const std::vector<PartitionBlock>& blocks,
+                               const std::vector<std::uint8_t>& layer,
+                               const RenderSettings& settings) {
+  CURLIDAR_TRY(check(settings));
+  if (settings.view != View::partition && settings.view != View::layers) {
+    return Error{ErrorCode::invalid_argument, "render: this view does not show a partition"};
+  }
+  const std::uint64_t cells = std::uint64_t{grid.width} * grid.height;
+  if (grid.width < 4 || grid.height == 0 || grid.size() != cells || layer.size() != cells) {
+    return Error{ErrorCode::invalid_argument,
+                 "render: a partition needs an organised cloud and a layer for each of its slots"};
+  }
+  CURLIDAR_TRY_ASSIGN(scale, drawing::make_scale(grid, settings, {}));
+  CURLIDAR_TRY_ASSIGN(canvas, drawing::draw_partition(grid, blocks, layer, settings, scale));
+  return canvas.image();
 }
 
 Image side_by_side(const std::vector<Image>& images) {
