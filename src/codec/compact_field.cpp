@@ -85,8 +85,8 @@ CompactField::CompactField(compact::DecodedScan scan)
         const auto& placed = scan_.surfaces[static_cast<std::size_t>(scan_.surface[at])];
         const compact::Direction& d =
             geometry.directions()[std::size_t{row} * geometry.columns() + column];
-        correction_[at] =
-            static_cast<std::int32_t>(scan_.range[at] - placed.surface.range_at(placed.frame, d));
+        correction_[at] = static_cast<std::int32_t>(scan_.range[at] - offset(place.row + row) -
+                                                    placed.surface.range_at(placed.frame, d));
       }
     }
   }
@@ -103,8 +103,13 @@ double CompactField::elevation(double row, double range) const {
   return base + (height_m_[k] + (next - height_m_[k]) * share) / range;
 }
 
+double CompactField::calibrated(std::size_t cell) const {
+  const auto row = static_cast<std::uint32_t>(cell / lattice_.columns());
+  return static_cast<double>(scan_.range[cell] - offset(row)) / compact::kRangeUnit;
+}
+
 double CompactField::extend(std::size_t cell, const compact::Direction& direction) const {
-  if (scan_.surface[cell] < 0) return static_cast<double>(scan_.range[cell]) / compact::kRangeUnit;
+  if (scan_.surface[cell] < 0) return calibrated(cell);
   const auto& placed = scan_.surfaces[static_cast<std::size_t>(scan_.surface[cell])];
   const std::int64_t range = placed.surface.range_at(placed.frame, direction) + correction_[cell];
   return static_cast<double>(std::max<std::int64_t>(range, 1)) / compact::kRangeUnit;
@@ -118,9 +123,8 @@ double CompactField::range_at(const std::array<Corner, 4>& corners,
   for (const Corner& corner : corners) {
     if (corner.weight <= 0 || scan_.range[corner.cell] <= 0) continue;
     // On a cell itself nothing is rounded on the way.
-    const double range = corner.weight == 1
-                             ? static_cast<double>(scan_.range[corner.cell]) / compact::kRangeUnit
-                             : extend(corner.cell, direction);
+    const double range =
+        corner.weight == 1 ? calibrated(corner.cell) : extend(corner.cell, direction);
     weight += corner.weight;
     sum += corner.weight * range;
     low = std::min(low, range);
@@ -137,8 +141,7 @@ double CompactField::range_at(const std::array<Corner, 4>& corners,
       std::max_element(corners.begin(), corners.end(),
                        [](const Corner& a, const Corner& b) { return a.weight < b.weight; });
   const std::uint32_t nearest = nearest_[most->cell];
-  return nearest == UINT32_MAX ? kNan
-                               : static_cast<double>(scan_.range[nearest]) / compact::kRangeUnit;
+  return nearest == UINT32_MAX ? kNan : calibrated(nearest);
 }
 
 void CompactField::evaluate_row(double row, std::span<const double> columns, bool masked,
@@ -148,6 +151,8 @@ void CompactField::evaluate_row(double row, std::span<const double> columns, boo
   const auto top = static_cast<std::uint32_t>(inside);
   const std::uint32_t bottom = std::min(top + 1, lattice_.rows() - 1);
   const double down = inside - top;
+  const double ring_offset =
+      down == 0 ? static_cast<double>(offset(top)) / compact::kRangeUnit : 0.0;
   const double elevation = lattice_.elevation(row);
   const double flat = std::cos(elevation), up = std::sin(elevation);
   const std::uint32_t width = lattice_.columns();
@@ -164,7 +169,8 @@ void CompactField::evaluate_row(double row, std::span<const double> columns, boo
                            {cell(top, right), (1 - down) * across},
                            {cell(bottom, left), down * (1 - across)},
                            {cell(bottom, right), down * across}}},
-                         direction, masked);
+                         direction, masked) +
+                ring_offset;
   }
 }
 

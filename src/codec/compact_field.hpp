@@ -13,10 +13,11 @@
 
 namespace curlidar {
 
-/// A direction takes the surfaces of the four cells around it, each moved by what its cell's coded
-/// range differs from it there, weighted by nearness. So the field passes through every coded range
-/// and needs no masks of its own: a direction is believed where coded cells hold at least half of
-/// the weight and their surfaces agree to 0.3 m + 10 %.
+/// A direction takes the surfaces of the four cells around it, each moved by its cell's residual,
+/// weighted by nearness. It needs no masks of its own: a direction is believed where coded cells
+/// hold at least half of the weight and their surfaces agree to 0.3 m + 10 %. On the lattice's rows
+/// the range offset of the ring is added, so that every cell has exactly its coded range; between
+/// them it would be an error of the sensor drawn into the surface.
 class CompactField : public Field {
  public:
   explicit CompactField(compact::DecodedScan scan);
@@ -42,6 +43,11 @@ class CompactField : public Field {
   }
   double range_at(const std::array<Corner, 4>& corners, const compact::Direction& direction,
                   bool masked) const;
+  std::int32_t offset(std::uint32_t row) const {
+    return scan_.table.range_offset.empty() ? 0 : scan_.table.range_offset[row];
+  }
+  /// Coded range without the ring's offset, metres.
+  double calibrated(std::size_t cell) const;
   /// Range of a coded cell's surface in another direction, metres.
   double extend(std::size_t cell, const compact::Direction& direction) const;
 
