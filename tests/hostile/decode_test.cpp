@@ -22,6 +22,9 @@ std::vector<std::byte> file_of(Profile profile) {
   settings.profile = profile;
   settings.paper = for_profile(settings.paper, profile);
   settings.paper.global_degree = 6;
+  settings.compact.columns = 64;
+  settings.compact.target_value = 0.01;  // with residuals
+  settings.compact.effort = 1;
   Cloud scan = test::small_scan("room", sensor);
   scan.metadata["frame_id"] = "lidar";
   return encode(scan, settings)->bytes;
@@ -67,9 +70,55 @@ TEST_P(HostileDecode, DamageBehindRightChecksums) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, HostileDecode,
-                         testing::Values(Profile::paper, Profile::paper_1to1,
-                                         Profile::paper_global),
+                         testing::Values(Profile::paper, Profile::paper_1to1, Profile::paper_global,
+                                         Profile::compact),
                          test::profile_test_name);
+
+TEST(HostileDecode, CompactFilesCutAtEveryLengthGiveWhatIsThere) {
+  const auto file = file_of(Profile::compact);
+  const std::size_t returns = decode(file, kLimits)->coded_returns;
+  DecodeOptions options;
+  options.limits = kLimits;
+  options.allow_truncated = true;
+  std::size_t last = 0;
+  for (std::size_t size = 0; size < file.size(); ++size) {
+    const Result<DecodedScan> scan = decode(ByteSpan(file).first(size), options);
+    if (!scan) {
+      ASSERT_FALSE(scan.error().message.empty());
+      ASSERT_EQ(last, 0u) << "cut at " << size;
+      continue;
+    }
+    ASSERT_FALSE(scan->missing.empty()) << "cut at " << size;
+    ASSERT_EQ(scan->points.size(), scan->coded_returns);
+    ASSERT_GE(scan->coded_returns, last) << "cut at " << size;
+    last = scan->coded_returns;
+    ASSERT_TRUE(reconstruct(*scan, {.rows = 1.5}));
+  }
+  EXPECT_EQ(last, returns);
+}
+
+TEST(HostileDecode, DamagedCompactFilesDecodedInPart) {
+  const auto file = file_of(Profile::compact);
+  test::Random random(11);
+  for (int i = 0; i < 500; ++i) {
+    auto damaged = file;
+    damaged[8 + random.below(file.size() - 8)] = static_cast<std::byte>(random.next());
+    damaged = test::with_right_checksums(damaged);
+    DecodeOptions options;
+    options.limits = kLimits;
+    options.allow_truncated = true;
+    options.partition = true;
+    options.field_only = i % 2 == 0;
+    options.region = ScanRegion{2, 9, -1, 2};
+    const auto length = i % 3 == 0 ? damaged.size() : random.below(damaged.size());
+    const Result<DecodedScan> scan = decode(ByteSpan(damaged).first(length), options);
+    if (scan) {
+      ASSERT_TRUE(reconstruct(*scan, {.rows = 2, .masks = false}));
+    } else {
+      ASSERT_FALSE(scan.error().message.empty());
+    }
+  }
+}
 
 TEST(HostileDecode, ErrorsNameTheChunkAndTheByte) {
   auto file = file_of(Profile::paper);
