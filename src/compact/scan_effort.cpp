@@ -28,8 +28,8 @@ constexpr std::array<EffortRow, kMostEffort> kEfforts = {{
     {4, 3, 3, 2, 3, 32, 2},
 }};
 
-constexpr std::int32_t kCoarseStep = kRangeUnit / 2;
-constexpr std::int64_t kCoarseRatio = 8;
+constexpr std::int32_t kCoarseStep = 3 * kRangeUnit / 10;
+constexpr std::int64_t kCoarseRatio = 4;
 constexpr std::int64_t kCostEntries = 8 * 4096;
 
 std::int32_t step_of(std::int64_t mean_error, std::int64_t factor_per_mille,
@@ -100,7 +100,7 @@ std::vector<std::int64_t> residual_cost_table(std::int32_t residual_step, std::i
 Steps steps_for_error(std::int64_t mean_error, std::int64_t scale_q16) {
   Steps steps;
   if (mean_error >= kFieldAloneFrom) {
-    steps.step = step_of(mean_error, 5500, scale_q16);
+    steps.step = step_of(mean_error, 9000, scale_q16);
     return steps;
   }
   if (mean_error >= kCoarseFieldBelow) {

@@ -46,7 +46,7 @@ struct Steps {
 /// From this mean error on (Q16 metres) a field alone is the best; below the other one, a coarse
 /// field under fine residuals.
 inline constexpr std::int64_t kFieldAloneFrom = 3 * kRangeUnit / 100;
-inline constexpr std::int64_t kCoarseFieldBelow = 9 * kRangeUnit / 1000;
+inline constexpr std::int64_t kCoarseFieldBelow = 7 * kRangeUnit / 1000;
 
 /// Steps that give about the wanted mean error (Q16 metres), times `scale_q16` / 65536: the codec
 /// searches over the scale, in which the reached error rises monotonically but for noise. Three
