@@ -119,10 +119,10 @@ double root_mean_square(const std::vector<double>& values) {
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
 }
 
-/// Gives the model range offsets if they make the file smaller at the same error.
-Status choose_range_offsets(const CompactJob& job, std::vector<double> offsets, double error_m,
+/// Gives the model range offsets if they make the file smaller at the same error, and the job what
+/// was learnt about where to start.
+Status choose_range_offsets(CompactJob& job, std::vector<double> offsets, double error_m,
                             CompactModel& model) {
-  constexpr std::uint32_t kQuickEffort = 2;
   CompactModel tried = model;
   set_range_offsets(tried.table, offsets, error_m);
   if (tried.table.range_offset.empty()) return {};
@@ -134,12 +134,14 @@ Status choose_range_offsets(const CompactJob& job, std::vector<double> offsets, 
   const compact::Steps steps = usual_steps(job);
   CURLIDAR_TRY_ASSIGN(plain, try_steps(job, steps, kQuickEffort));
   double least = cost_of(plain);
+  job.start = start_after(plain, job.settings);
   for (std::uint32_t round = 0; round < offset_rounds(job.settings.effort); ++round) {
     set_range_offsets(tried.table, offsets, error_m);
     const CompactJob other{job.cloud, job.scan, tried, job.settings, job.threads, {}};
     CURLIDAR_TRY_ASSIGN(moved, try_steps(other, steps, kQuickEffort));
     if (cost_of(moved) >= least) break;
     least = cost_of(moved);
+    job.start = start_after(moved, job.settings);
     model.table = tried.table;
     const std::vector<double> medians = row_medians(tried, moved.encoded.decoded);
     for (std::size_t row = 0; row < offsets.size(); ++row) offsets[row] += medians[row];
@@ -168,7 +170,7 @@ Result<Encoded> encode_compact(const Cloud& cloud, const EncodeSettings& setting
   CompactModel model = make_model(scan, rows, error_m);
   report.stages_ms.push_back({"grid", watch.lap_ms()});
 
-  const CompactJob job{cloud, scan, model, settings.compact, settings.threads, progress};
+  CompactJob job{cloud, scan, model, settings.compact, settings.threads, progress};
   CURLIDAR_TRY(choose_range_offsets(job, estimate_range_offsets(scan, rows), error_m, model));
   report.stages_ms.push_back({"offsets", watch.lap_ms()});
   CURLIDAR_TRY_ASSIGN(trial, search_target(job));

@@ -19,6 +19,10 @@ namespace {
 constexpr std::uint32_t kMostTrials = 14;
 /// Efforts from here on come nearer to the target, for files some 2 % smaller.
 constexpr std::uint32_t kPatientEffort = 7;
+/// Of the logarithm of the error over that of the step; of bits, the same downwards.
+constexpr double kUsualSlope = 0.75;
+/// Where to aim between the target and the least that is good enough.
+constexpr double kAim = 0.45;
 
 /// Bits per return at some mean errors, on HDL-64E scans: where to start.
 struct RatePoint {
@@ -166,9 +170,9 @@ class TargetSearch {
 
   /// Searches over the scale of the steps for a mean error of `error_m`, which decides what kind of
   /// coding is used.
-  Status run(double error_m) {
-    Secant secant(bits_ ? -0.75 : 0.75, good_ * 0.45);
-    double at = 0;
+  Status run(double error_m, double start = 0) {
+    Secant secant(bits_ ? -kUsualSlope : kUsualSlope, good_ * kAim);
+    double at = start;
     std::optional<compact::Steps> last;
     for (std::uint32_t i = 0; i < kMostTrials; ++i) {
       const compact::Steps steps = compact::steps_for_error(
@@ -177,9 +181,9 @@ class TargetSearch {
       last = steps;
       CURLIDAR_TRY_ASSIGN(miss, take(steps));
       if (best_ && best_miss_ > good_) break;
-      if (bits_ && i < 2 && std::abs(miss) > 0.3) {
+      if (bits_ && i < 2 && at == 0 && std::abs(miss) > 0.3) {
         // Far off: the guess of the error was wrong, and with it the kind of coding.
-        error_m = std::clamp(error_m * std::exp(miss / 0.75), 1e-5, 100.0);
+        error_m = std::clamp(error_m * std::exp(miss / kUsualSlope), 1e-5, 100.0);
         continue;
       }
       if (!bits_ && miss > 0 && at < kHopeless) break;
@@ -260,6 +264,16 @@ double cost_of(const CompactTrial& trial) {
   return std::log(trial.bits_per_point) + 0.75 * std::log(trial.errors.mean);
 }
 
+double start_after(const CompactTrial& quick, const CompactSettings& settings) {
+  // What an effort finds that a quick encoding does not, in errors or bits.
+  constexpr double kGainAnEffort = 0.03;
+  const double miss = miss_of(quick, settings) - kGainAnEffort * (settings.effort - kQuickEffort);
+  const bool bits = settings.target == CompactTarget::bits_per_point;
+  if (bits && std::abs(miss) > 0.3) return 0;
+  const double aim = kAim * std::log(0.95);
+  return std::clamp((aim - miss) / (bits ? -kUsualSlope : kUsualSlope), -1.5, 1.5);
+}
+
 double first_error_guess(const CompactSettings& settings) {
   switch (settings.target) {
     case CompactTarget::error:
@@ -282,7 +296,8 @@ Result<CompactTrial> search_target(const CompactJob& job) {
   TargetSearch search(job);
   CURLIDAR_TRY(search.run(s.target == CompactTarget::bits_per_point
                               ? first_error_guess(s)
-                              : range_share(job, first_error_guess(s))));
+                              : range_share(job, first_error_guess(s)),
+                          job.start));
   // Little effort may leave surfaces that no step brings near enough: residuals always do.
   for (const double error_m : kResidualKinds) {
     if (search.found() || s.target == CompactTarget::bits_per_point) break;

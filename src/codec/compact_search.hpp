@@ -11,6 +11,9 @@
 
 namespace curlidar {
 
+/// The effort of encodings that only compare one thing with another.
+inline constexpr std::uint32_t kQuickEffort = 2;
+
 /// What is being coded; everything outlives the search.
 struct CompactJob {
   const Cloud& cloud;
@@ -19,6 +22,7 @@ struct CompactJob {
   const CompactSettings& settings;
   std::size_t threads = 1;
   ProgressCallback progress{};
+  double start = 0;  ///< logarithm of the scale of the usual steps at which the search begins
 };
 
 /// One encoding and what it gave.
@@ -41,6 +45,9 @@ compact::Steps usual_steps(const CompactJob& job);
 /// A logarithm to compare encodings of about one error by: a percent less error is worth 3/4 of a
 /// percent of bits.
 double cost_of(const CompactTrial& trial);
+
+/// Where to begin, as CompactJob::start, after a quick encoding at the usual steps.
+double start_after(const CompactTrial& quick, const CompactSettings& settings);
 
 /// The mean range error at which to look for the target first.
 double first_error_guess(const CompactSettings& settings);
