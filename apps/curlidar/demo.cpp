@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -39,7 +38,7 @@ struct Reconstruction {
   double row_factor = 1;
   Cloud cloud;
   double decode_ms = 0;
-  Comparison to_scan;         ///< a: reconstruction, b: the scan's returns in coded range
+  Comparison to_scan;         ///< a: reconstruction, b: the scan's returns
   DistanceStats range_error;  ///< along the same directions, against the exact surface
 };
 
@@ -58,7 +57,7 @@ DistanceStats range_errors(const Cloud& reconstructed, const Cloud& truth) {
   return summarise(std::move(errors));
 }
 
-Reconstruction reconstruct_and_measure(const DecodedScan& scan, const Cloud& in_range,
+Reconstruction reconstruct_and_measure(const DecodedScan& scan, const Cloud& raw,
                                        const Scene& scene, double row_factor, std::size_t threads) {
   Reconstruction result;
   result.row_factor = row_factor;
@@ -69,22 +68,18 @@ Reconstruction reconstruct_and_measure(const DecodedScan& scan, const Cloud& in_
   const auto start = Clock::now();
   result.cloud = need(reconstruct(scan, settings));
   result.decode_ms = ms_since(start);
-  result.to_scan = need(compare(result.cloud, in_range, threads));
-  const Cloud truth =
-      need(simulate_truth(scene, scan.field->lattice(), row_factor, 1, scan.paper->min_range_m,
-                          scan.sensor.max_range_m, threads));
+  result.to_scan = need(compare(result.cloud, raw, threads));
+  const Cloud truth = need(simulate_truth(scene, scan.field->lattice(), row_factor, 1, 0,
+                                          scan.sensor.max_range_m, threads));
   result.range_error = range_errors(result.cloud, truth);
   return result;
 }
 
-/// The returns of [min, max] metres.
-Cloud within_range(const Cloud& cloud, double min_m, double max_m) {
+/// Without the slots that hold no return.
+Cloud only_returns(const Cloud& cloud) {
   std::vector<std::uint32_t> kept;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double range = norm(cloud.positions[i]);
-    if (range > 0 && range >= min_m && range <= max_m) {
-      kept.push_back(static_cast<std::uint32_t>(i));
-    }
+    if (is_return(cloud.positions[i])) kept.push_back(static_cast<std::uint32_t>(i));
   }
   return select(cloud, kept);
 }
@@ -113,7 +108,7 @@ std::string table_text(const std::vector<Reconstruction>& all) {
   }
   return table.text() +
          "  exact error: along each direction, against the surface that the simulator knows\n"
-         "  to and from scan: to the nearest neighbour among the returns in coded range\n";
+         "  to and from scan: to the nearest neighbour among the returns\n";
 }
 
 Json json_of(const std::vector<Reconstruction>& all) {
@@ -137,7 +132,6 @@ Now with a scan of your own (PCD, PLY, KITTI or nuScenes .bin, .npy, CSV):
   curlidar decode scan.curl --rows 8 -o dense.ply         8 times denser
   curlidar compare scan.pcd scan.curl                     distances both ways
   curlidar render scan.curl --rows 8 -o dense.png         a picture
-Indoors add --preset indoor to encode.
 )";
 
 int run(const Options& options) {
@@ -165,9 +159,8 @@ int run(const Options& options) {
 
   next("encode");
   EncodeSettings encode_settings;
-  encode_settings.profile = Profile::paper;
   encode_settings.sensor = sensor;
-  encode_settings.paper.row_rule = RowRule::rings;  // evenly spaced rows would miss some of the rings
+  encode_settings.compact.columns = sensor.columns;  // one for each firing
   encode_settings.attributes = std::vector<std::string>{};
   encode_settings.threads = options.common.threads;
   const auto start = Clock::now();
@@ -176,16 +169,12 @@ int run(const Options& options) {
   need(write_file(place("scan.curl"), encoded.bytes));
 
   const DecodedScan scan = need(decode(encoded.bytes));
-  const double coded_min_m = scan.paper->min_range_m;
-  const double coded_max_m =
-      scan.paper->max_range.metres > 0 ? scan.paper->max_range.metres : sensor.max_range_m;
-  const Cloud in_range = within_range(raw, coded_min_m, coded_max_m);
   std::vector<Reconstruction> all;
   for (const double factor : {1.0, 8.0}) {
     next("reconstruct");
-    all.push_back(reconstruct_and_measure(scan, in_range, *scene, factor, options.common.threads));
+    all.push_back(reconstruct_and_measure(scan, raw, *scene, factor, options.common.threads));
     save_cloud(place(fmt::format("reconstruction_{:g}x.ply", factor)),
-               within_range(all.back().cloud, 0, std::numeric_limits<double>::max()), {});
+               only_returns(all.back().cloud), {});
   }
 
   next("draw");
@@ -202,12 +191,10 @@ int run(const Options& options) {
   const std::size_t raw_bytes = count_returns(raw) * 12;
   std::string text = fmt::format(
       "A {} seen by a simulated {}: {} points, {} as float32.\n"
-      "Encoded by the paper's pipeline on the true rings in {}: {}, {:.1f} bits a point, {} coefficients.\n"
-      "Its outdoor preset codes {:.1f} m .. {:.1f} m (the 90th percentile): {} returns.\n\n{}\n",
+      "Encoded in {}: {}, {:.2f} bits a point; mean error of the coded returns {}.\n\n{}\n",
       options.scene, sensor.name, count_text(count_returns(raw)), bytes_text(raw_bytes),
       milliseconds_text(encode_ms), bytes_text(report.bytes), report.bits_per_point,
-      count_text(report.coefficients), coded_min_m, coded_max_m, count_text(in_range.size()),
-      table_text(all));
+      length_text(report.compact->mean_error_m), table_text(all));
   text += fmt::format(
       "In {}: original.ply, original.pcd, scan.curl, reconstruction_1x.ply,\n"
       "reconstruction_8x.ply and demo.png (original | 1 x | 8 x).\n{}",
@@ -217,6 +204,7 @@ int run(const Options& options) {
                                  {"points_coded", report.points_coded},
                                  {"bytes", report.bytes},
                                  {"bits_per_point", report.bits_per_point},
+                                 {"mean_error_m", report.compact->mean_error_m},
                                  {"encode_ms", encode_ms},
                                  {"reconstructions", json_of(all)}},
                                 text});
