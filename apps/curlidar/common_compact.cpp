@@ -49,8 +49,8 @@ void CompactOptions::add(CLI::App& app) {
                         ->capture_default_str()
                         ->group(kGroup));
   others_.push_back(app.add_flag("--no-index", no_index_,
-                                 "One segment: up to 2 % smaller, but --region options decode it "
-                                 "whole")
+                                 "One segment: up to 2 % smaller, but parts of it cannot be "
+                                 "decoded alone")
                         ->group(kGroup));
 }
 

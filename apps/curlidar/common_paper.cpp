@@ -9,8 +9,8 @@ namespace curlidar::app {
 namespace {
 
 constexpr const char* kGrid = "Grid";
-constexpr const char* kUpsampling = "Mesh and upsampling";
-constexpr const char* kFit = "Patches and fit";
+constexpr const char* kUpsampling = "Paper: mesh and upsampling";
+constexpr const char* kFit = "Paper: patches and fit";
 
 std::string joined(const std::vector<std::string>& names) {
   return fmt::format("{}", fmt::join(names, ", "));
@@ -36,7 +36,8 @@ CLI::Option* PaperOptions::add_number(CLI::App& app, const std::string& name,
 
 void PaperOptions::add_grid(CLI::App& app, const std::string& prefix) {
   paper_only(app.add_option("--preset", preset_,
-                            "Parameters for a kind of scan: " + joined(paper_preset_names()) +
+                            "Parameters of the paper's profiles for a kind of scan: " +
+                                joined(paper_preset_names()) +
                                 " or auto (indoor if most returns are nearer than 5 m, else "
                                 "outdoor). Defaults below are those of outdoor"))
       ->capture_default_str()
@@ -90,12 +91,12 @@ void PaperOptions::add_grid(CLI::App& app, const std::string& prefix) {
       ->group(kGrid);
   add_number<double>(
       app, "--outlier-radius", [](PaperSettings & s) -> auto& { return s.outlier_radius_m; },
-      "Outlier filter: neighbourhood, metres; 0 switches it off")
+      "Outlier filter (paper): neighbourhood, metres; 0 switches it off")
       ->check(number_in(0.0, 1e6))
       ->group(kGrid);
   add_number<std::uint32_t>(
       app, "--outlier-min", [](PaperSettings & s) -> auto& { return s.outlier_min_points; },
-      "Outlier filter: returns wanted in the neighbourhood, itself included")
+      "Outlier filter (paper): returns wanted in the neighbourhood, itself included")
       ->group(kGrid);
 }
 

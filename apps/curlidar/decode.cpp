@@ -29,7 +29,7 @@ attributes: choose them with --attributes.)";
 struct Options {
   CommonOptions common;
   std::vector<std::string> inputs;
-  std::string output, format, encoding = "binary", attributes = "all", rings, azimuth;
+  std::string output, format, encoding = "binary", attributes = "all", rings, azimuth, region;
   double rows = 1, columns = 1;
   bool no_masks = false, organised = false, field_only = false, allow_truncated = false;
 };
@@ -49,26 +49,42 @@ std::pair<T, T> parse_interval(const std::string& text, const char* option, cons
   return ends;
 }
 
+/// What --region, or --rings and --azimuth, say as texts; empty = all.
+std::pair<std::string, std::string> region_texts(const Options& options) {
+  if (options.region.empty()) return {options.rings, options.azimuth};
+  if (!options.rings.empty() || !options.azimuth.empty()) {
+    usage_error("--region holds both rings and azimuths: leave --rings and --azimuth out");
+  }
+  const std::size_t comma = options.region.find(',');
+  if (comma == std::string::npos) {
+    usage_error(
+        fmt::format("--region '{}': give RINGS,AZIMUTHS, such as 16:48,-45:45", options.region));
+  }
+  return {options.region.substr(0, comma), options.region.substr(comma + 1)};
+}
+
 DecodeOptions decode_options(const Options& options) {
   DecodeOptions decoding;
   decoding.field_only = options.field_only;
   decoding.allow_truncated = options.allow_truncated;
   decoding.threads = options.common.threads;
-  if (options.rings.empty() && options.azimuth.empty()) return decoding;
+  const auto [rings, azimuth] = region_texts(options);
+  const bool together = !options.region.empty();
   ScanRegion region;
-  if (!options.rings.empty()) {
+  if (together || !rings.empty()) {
     std::tie(region.ring_begin, region.ring_end) =
-        parse_interval<std::uint32_t>(options.rings, "--rings", "0:16");
+        parse_interval<std::uint32_t>(rings, together ? "--region" : "--rings", "0:16");
   }
-  if (!options.azimuth.empty()) {
-    const auto [begin, end] = parse_interval<double>(options.azimuth, "--azimuth", "-45:45");
+  if (together || !azimuth.empty()) {
+    const auto [begin, end] =
+        parse_interval<double>(azimuth, together ? "--region" : "--azimuth", "-45:45");
     if (!(begin >= -360 && end <= 720)) {
-      usage_error(fmt::format("--azimuth '{}': degrees, from -360 to 720", options.azimuth));
+      usage_error(fmt::format("azimuths '{}': degrees, from -360 to 720", azimuth));
     }
     region.azimuth_begin = begin * std::numbers::pi / 180;
     region.azimuth_end = end * std::numbers::pi / 180;
   }
-  decoding.region = region;
+  if (!rings.empty() || !azimuth.empty()) decoding.region = region;
   return decoding;
 }
 
@@ -190,6 +206,8 @@ Command add_decode(CLI::App& root) {
                   "Only azimuths from BEGIN counter-clockwise to END, degrees, 0 ahead (compact "
                   "files)")
       ->type_name("BEGIN:END");
+  app->add_option("--region", options->region, "Both at once, such as 16:48,-45:45")
+      ->type_name("RINGS,AZIMUTHS");
   app->add_flag("--field-only", options->field_only,
                 "Leave the residual layer out (compact files)");
   app->add_flag("--allow-truncated", options->allow_truncated,

@@ -232,11 +232,11 @@ Command add_encode(CLI::App& root) {
                   fmt::format("Format of the input: {}; default by content", kFormatNames));
   app->add_option("--meta", options->metadata, "key=value kept in the file; repeatable")
       ->allow_extra_args(false);
+  options->compact.add(*app);
   options->paper.add_grid(*app);
   options->paper.add_upsample(*app);
   options->paper.add_cliffs(*app);
   options->paper.add_fit(*app, "compact");
-  options->compact.add(*app);
   add_common_options(*app, options->common);
   return {app, [options] { return run(*options); }};
 }

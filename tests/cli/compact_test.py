@@ -108,7 +108,12 @@ class CompactTest(CommandTest):
         self.assertEqual(coarse["points"], whole["points"])
         error = self.run_json("compare", "coarse.pcd", "grid.pcd")["a_to_b"]["mean"]
         self.assertGreater(error, self.run_json("compare", "whole.pcd", "grid.pcd")["a_to_b"]["mean"])
-        for arguments in [["--rings", "8"], ["--rings", "9:3"], ["--azimuth", "a:b"],
+        both = self.run_json("decode", "x.curl", "--region", "0:8,-45:45", "-o", "both.pcd")
+        same = self.run_json("decode", "x.curl", "--rings", "0:8", "--azimuth", "-45:45", "-o",
+                             "same.pcd")
+        self.assertEqual(both["points"], same["points"])
+        self.assertLess(both["points"], upper["points"])
+        for arguments in [["--region", "0:8"], ["--region", "0:8,"], ["--rings", "8"], ["--rings", "9:3"], ["--azimuth", "a:b"],
                           ["--azimuth", "9:9"]]:
             self.run_fail(USAGE, "decode", "x.curl", *arguments, "-o", "no.pcd", says=arguments[0])
         self.run_fail(INPUT, "decode", "x.curl", "--rings", "90:99", "-o", "no.pcd", says="region")
