@@ -153,10 +153,9 @@ double range_share(const CompactJob& job, double error_m) {
   return std::sqrt(std::max(error_m * error_m - directions * directions, 0.01 * error_m * error_m));
 }
 
-/// Errors below which steps_for_error adds residuals, and makes them fine.
-constexpr std::array<double, 2> kResidualKinds{
-    0.97 * static_cast<double>(compact::kFieldAloneFrom) / compact::kRangeUnit,
-    0.97 * static_cast<double>(compact::kCoarseFieldBelow) / compact::kRangeUnit};
+/// A wanted error for which steps_for_error lays fine residuals on a coarse field.
+constexpr double kFineResiduals_m =
+    0.97 * static_cast<double>(compact::kCoarseFieldBelow) / compact::kRangeUnit;
 
 /// Looks for the steps that reach a job's target.
 class TargetSearch {
@@ -299,9 +298,9 @@ Result<CompactTrial> search_target(const CompactJob& job) {
                               : range_share(job, first_error_guess(s)),
                           job.start));
   // Little effort may leave surfaces that no step brings near enough: residuals always do.
-  for (const double error_m : kResidualKinds) {
-    if (search.found() || s.target == CompactTarget::bits_per_point) break;
-    if (first_error_guess(s) > error_m) CURLIDAR_TRY(search.run(error_m));
+  if (!search.found() && s.target != CompactTarget::bits_per_point &&
+      first_error_guess(s) > kFineResiduals_m) {
+    CURLIDAR_TRY(search.run(kFineResiduals_m));
   }
   if (!search.found()) return out_of_reach(job, s.target_value * std::exp(search.least_miss()));
   return std::move(search).best();

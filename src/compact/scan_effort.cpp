@@ -30,6 +30,10 @@ constexpr std::array<EffortRow, kMostEffort> kEfforts = {{
 
 constexpr std::int32_t kCoarseStep = 3 * kRangeUnit / 10;
 constexpr std::int64_t kCoarseRatio = 4;
+/// From this step on hardly a leaf wants residuals.
+constexpr std::int32_t kFieldAloneStep = 42 * kRangeUnit / 100;
+/// Mean errors that mostly need such steps.
+constexpr std::int64_t kUsuallyFieldAlone = 3 * kRangeUnit / 100;
 constexpr std::int64_t kCostEntries = 8 * 4096;
 
 std::int32_t step_of(std::int64_t mean_error, std::int64_t factor_per_mille,
@@ -99,12 +103,9 @@ std::vector<std::int64_t> residual_cost_table(std::int32_t residual_step, std::i
 
 Steps steps_for_error(std::int64_t mean_error, std::int64_t scale_q16) {
   Steps steps;
-  if (mean_error >= kFieldAloneFrom) {
-    steps.step = step_of(mean_error, 9000, scale_q16);
-    return steps;
-  }
   if (mean_error >= kCoarseFieldBelow) {
-    steps.step = steps.residual_step = step_of(mean_error, 4400, scale_q16);
+    steps.step = step_of(mean_error, mean_error >= kUsuallyFieldAlone ? 9000 : 4400, scale_q16);
+    steps.residual_step = steps.step < kFieldAloneStep ? steps.step : 0;
     return steps;
   }
   steps.step = kCoarseStep;

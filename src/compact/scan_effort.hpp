@@ -43,15 +43,13 @@ struct Steps {
   std::uint32_t smallest_leaf = 8;
 };
 
-/// From this mean error on (Q16 metres) a field alone is the best; below the other one, a coarse
-/// field under fine residuals.
-inline constexpr std::int64_t kFieldAloneFrom = 3 * kRangeUnit / 100;
+/// Below this mean error (Q16 metres) a coarse field under fine residuals is the best.
 inline constexpr std::int64_t kCoarseFieldBelow = 7 * kRangeUnit / 1000;
 
 /// Steps that give about the wanted mean error (Q16 metres), times `scale_q16` / 65536: the codec
 /// searches over the scale, in which the reached error rises monotonically but for noise. Three
-/// regimes, chosen by the wanted error alone: a field without residuals, field and residuals of one
-/// step, a coarse field under fine residuals.
+/// regimes: a coarse field under fine residuals, where the wanted error asks for it; else field and
+/// residuals of one step; a field without residuals where that step is wide.
 Steps steps_for_error(std::int64_t mean_error, std::int64_t scale_q16 = 65536);
 
 /// Steps for a given D: no residual layer.
