@@ -226,6 +226,9 @@ Result<DecodedScan> decode_scan(const ScanChunks& chunks, const ScanLimits& limi
   out.field_range.resize(cells);
   out.surface.resize(cells, kNoSurface);
   out.leaf.resize(cells, -1);
+  std::size_t surfaces = 0;
+  for (const SegmentScan& scan : scans) surfaces += scan.surfaces.size();
+  out.surfaces.reserve(surfaces);
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (!out.segments[i].wanted) continue;
     CURLIDAR_TRY(check_progress(scans[i], out.segments[i].place, static_cast<std::uint32_t>(i),

@@ -16,8 +16,8 @@
 namespace curlidar::compact {
 
 struct ScanLimits {
-  /// Rows * columns. Checked before anything is allocated; a decoder takes some 60 bytes a cell,
-  /// and for hostile bytes at most some 600.
+  /// Rows * columns. Checked before anything is allocated; a decoder takes some 100 bytes a cell,
+  /// and for hostile bytes, which may make every cell a leaf, at most some 1000.
   std::uint64_t max_cells = std::uint64_t{1} << 26;
 };
 
