@@ -134,14 +134,14 @@ Status choose_range_offsets(CompactJob& job, std::vector<double> offsets, double
   const compact::Steps steps = usual_steps(job);
   CURLIDAR_TRY_ASSIGN(plain, try_steps(job, steps, kQuickEffort));
   double least = cost_of(plain);
-  job.start = start_after(plain, job.settings);
+  job.start = start_after(plain, job.settings, kQuickEffort);
   for (std::uint32_t round = 0; round < offset_rounds(job.settings.effort); ++round) {
     set_range_offsets(tried.table, offsets, error_m);
     const CompactJob other{job.cloud, job.scan, tried, job.settings, job.threads, {}};
     CURLIDAR_TRY_ASSIGN(moved, try_steps(other, steps, kQuickEffort));
     if (cost_of(moved) >= least) break;
     least = cost_of(moved);
-    job.start = start_after(moved, job.settings);
+    job.start = start_after(moved, job.settings, kQuickEffort);
     model.table = tried.table;
     const std::vector<double> medians = row_medians(tried, moved.encoded.decoded);
     for (std::size_t row = 0; row < offsets.size(); ++row) offsets[row] += medians[row];
@@ -173,6 +173,7 @@ Result<Encoded> encode_compact(const Cloud& cloud, const EncodeSettings& setting
   CompactJob job{cloud, scan, model, settings.compact, settings.threads, progress};
   CURLIDAR_TRY(choose_range_offsets(job, estimate_range_offsets(scan, rows), error_m, model));
   report.stages_ms.push_back({"offsets", watch.lap_ms()});
+  CURLIDAR_TRY(choose_kind(job));
   CURLIDAR_TRY_ASSIGN(trial, search_target(job));
   report.stages_ms.push_back({"search", watch.lap_ms()});
 

@@ -157,6 +157,9 @@ double range_share(const CompactJob& job, double error_m) {
 constexpr double kFineResiduals_m =
     0.97 * static_cast<double>(compact::kCoarseFieldBelow) / compact::kRangeUnit;
 
+/// Wanted errors between which either kind of field may need fewer bits.
+constexpr std::array<double, 2> kBothKinds_m{0.003, 0.025};
+
 /// Looks for the steps that reach a job's target.
 class TargetSearch {
  public:
@@ -169,13 +172,13 @@ class TargetSearch {
 
   /// Searches over the scale of the steps for a mean error of `error_m`, which decides what kind of
   /// coding is used.
-  Status run(double error_m, double start = 0) {
+  Status run(double error_m, compact::FieldKind kind, double start = 0) {
     Secant secant(bits_ ? -kUsualSlope : kUsualSlope, good_ * kAim);
     double at = start;
     std::optional<compact::Steps> last;
     for (std::uint32_t i = 0; i < kMostTrials; ++i) {
       const compact::Steps steps = compact::steps_for_error(
-          to_units(error_m), std::max<std::int64_t>(1, std::llround(65536 * std::exp(at))));
+          to_units(error_m), std::max<std::int64_t>(1, std::llround(65536 * std::exp(at))), kind);
       if (last && last->step == steps.step && last->residual_step == steps.residual_step) break;
       last = steps;
       CURLIDAR_TRY_ASSIGN(miss, take(steps));
@@ -255,18 +258,41 @@ Result<CompactTrial> try_steps(const CompactJob& job, const compact::Steps& step
 compact::Steps usual_steps(const CompactJob& job) {
   const double error_m = first_error_guess(job.settings);
   if (job.settings.target == CompactTarget::step) return steps_of_step(job.settings.target_value);
-  return compact::steps_for_error(to_units(
-      job.settings.target == CompactTarget::bits_per_point ? error_m : range_share(job, error_m)));
+  return compact::steps_for_error(
+      to_units(job.settings.target == CompactTarget::bits_per_point ? error_m
+                                                                    : range_share(job, error_m)),
+      65536, job.kind);
+}
+
+Status choose_kind(CompactJob& job) {
+  const double error_m = first_error_guess(job.settings);
+  if (job.settings.effort < compact::kDefaultEffort || job.settings.target == CompactTarget::step ||
+      error_m < kBothKinds_m.front() || error_m > kBothKinds_m.back()) {
+    return {};
+  }
+  std::optional<double> least;
+  compact::FieldKind best = job.kind;
+  for (const compact::FieldKind kind : {compact::FieldKind::close, compact::FieldKind::coarse}) {
+    job.kind = kind;
+    CURLIDAR_TRY_ASSIGN(trial, try_steps(job, usual_steps(job), compact::kDefaultEffort));
+    if (least && cost_of(trial) >= *least) continue;
+    least = cost_of(trial);
+    best = kind;
+    job.start = start_after(trial, job.settings, compact::kDefaultEffort);
+  }
+  job.kind = best;
+  return {};
 }
 
 double cost_of(const CompactTrial& trial) {
   return std::log(trial.bits_per_point) + 0.75 * std::log(trial.errors.mean);
 }
 
-double start_after(const CompactTrial& quick, const CompactSettings& settings) {
+double start_after(const CompactTrial& quick, const CompactSettings& settings,
+                   std::uint32_t effort) {
   // What an effort finds that a quick encoding does not, in errors or bits.
   constexpr double kGainAnEffort = 0.03;
-  const double miss = miss_of(quick, settings) - kGainAnEffort * (settings.effort - kQuickEffort);
+  const double miss = miss_of(quick, settings) - kGainAnEffort * (settings.effort - effort);
   const bool bits = settings.target == CompactTarget::bits_per_point;
   if (bits && std::abs(miss) > 0.3) return 0;
   const double aim = kAim * std::log(0.95);
@@ -296,11 +322,11 @@ Result<CompactTrial> search_target(const CompactJob& job) {
   CURLIDAR_TRY(search.run(s.target == CompactTarget::bits_per_point
                               ? first_error_guess(s)
                               : range_share(job, first_error_guess(s)),
-                          job.start));
+                          job.kind, job.start));
   // Little effort may leave surfaces that no step brings near enough: residuals always do.
   if (!search.found() && s.target != CompactTarget::bits_per_point &&
       first_error_guess(s) > kFineResiduals_m) {
-    CURLIDAR_TRY(search.run(kFineResiduals_m));
+    CURLIDAR_TRY(search.run(kFineResiduals_m, compact::FieldKind::coarse));
   }
   if (!search.found()) return out_of_reach(job, s.target_value * std::exp(search.least_miss()));
   return std::move(search).best();

@@ -23,6 +23,7 @@ struct CompactJob {
   std::size_t threads = 1;
   ProgressCallback progress{};
   double start = 0;  ///< logarithm of the scale of the usual steps at which the search begins
+  compact::FieldKind kind = compact::FieldKind::by_error;
 };
 
 /// One encoding and what it gave.
@@ -42,12 +43,16 @@ Result<CompactTrial> try_steps(const CompactJob& job, const compact::Steps& step
 /// The steps that the search starts from.
 compact::Steps usual_steps(const CompactJob& job);
 
+/// Chooses the kind of field where both kinds may be best, by encoding with either.
+Status choose_kind(CompactJob& job);
+
 /// A logarithm to compare encodings of about one error by: a percent less error is worth 3/4 of a
 /// percent of bits.
 double cost_of(const CompactTrial& trial);
 
 /// Where to begin, as CompactJob::start, after a quick encoding at the usual steps.
-double start_after(const CompactTrial& quick, const CompactSettings& settings);
+double start_after(const CompactTrial& quick, const CompactSettings& settings,
+                   std::uint32_t effort);
 
 /// The mean range error at which to look for the target first.
 double first_error_guess(const CompactSettings& settings);

@@ -101,9 +101,12 @@ std::vector<std::int64_t> residual_cost_table(std::int32_t residual_step, std::i
   return costs;
 }
 
-Steps steps_for_error(std::int64_t mean_error, std::int64_t scale_q16) {
+Steps steps_for_error(std::int64_t mean_error, std::int64_t scale_q16, FieldKind kind) {
   Steps steps;
-  if (mean_error >= kCoarseFieldBelow) {
+  if (kind == FieldKind::by_error) {
+    kind = mean_error < kCoarseFieldBelow ? FieldKind::coarse : FieldKind::close;
+  }
+  if (kind == FieldKind::close) {
     steps.step = step_of(mean_error, mean_error >= kUsuallyFieldAlone ? 9000 : 4400, scale_q16);
     steps.residual_step = steps.step < kFieldAloneStep ? steps.step : 0;
     return steps;

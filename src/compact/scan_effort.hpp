@@ -46,11 +46,19 @@ struct Steps {
 /// Below this mean error (Q16 metres) a coarse field under fine residuals is the best.
 inline constexpr std::int64_t kCoarseFieldBelow = 7 * kRangeUnit / 1000;
 
+/// What a field does under residuals.
+enum class FieldKind : std::uint8_t {
+  by_error,  ///< as is mostly best for the wanted error
+  close,     ///< it has the residuals' step, which are for what it cannot say
+  coarse,    ///< it predicts for fine residuals everywhere
+};
+
 /// Steps that give about the wanted mean error (Q16 metres), times `scale_q16` / 65536: the codec
 /// searches over the scale, in which the reached error rises monotonically but for noise. Three
-/// regimes: a coarse field under fine residuals, where the wanted error asks for it; else field and
-/// residuals of one step; a field without residuals where that step is wide.
-Steps steps_for_error(std::int64_t mean_error, std::int64_t scale_q16 = 65536);
+/// regimes: a coarse field under fine residuals, where `kind` asks for it; else field and residuals
+/// of one step; a field without residuals where that step is wide.
+Steps steps_for_error(std::int64_t mean_error, std::int64_t scale_q16 = 65536,
+                      FieldKind kind = FieldKind::by_error);
 
 /// Steps for a given D: no residual layer.
 Steps steps_for_step(std::int32_t step);
