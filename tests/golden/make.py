@@ -7,21 +7,29 @@
 
 For changes of the format only: what is in tests/golden/compact is decoded by every later version.
 """
+import hashlib
 import json
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+sys.path.append(str(Path(__file__).resolve().parents[1] / "spec"))
+from container import file_of, read_chunks, varint
+
 COMPACT = Path(__file__).resolve().parent / "compact"
 # name: scene, sensor, options of simulate, columns of the grid, options of encode
 ENCODED = {
-    "street-16": ("street", "vlp16", [], 64, ["--error", 0.05, "--no-index"]),
+    "street-16": ("street", "vlp16", [], 96, ["--error", 0.05, "--no-index"]),
     "room-16-fast": ("room", "vlp16", [], 40, ["--error", 0.02, "--effort", 1, "--no-index"]),
     "forest-40-small": ("forest", "pandar40p", [], 32, ["--error", 0.05, "--effort", 9]),
     "corridor-32-fine": ("corridor", "os1-32", [], 24, ["--error", 0.002, "--no-index"]),
-    "street-128": ("street", "os0-128", [], 12, ["--error", 0.08, "--no-index"]),
-    "college-32-step": ("newer-college", "hdl32e", [], 24, ["--step", 0.25]),
+    "room-64-noisy": ("room", "pandar64", ["--noise", 0.1], 20, ["--error", 0.01, "--no-index"]),
+    "forest-40-step": ("forest", "pandar40p", [], 60, ["--step", 0.03, "--no-index"]),
+    "room-32-layers": ("room", "os0-32", ["--noise", 0, "--dropout", 0], 40,
+                       ["--step", 0.004, "--effort", 9]),
+    "street-128": ("street", "os0-128", [], 8, ["--error", 0.08, "--no-index"]),
+    "college-32-step": ("newer-college", "hdl32e", [], 40, ["--step", 0.25]),
 }
 # name: the file above it is made from, changes
 RECODED = {
@@ -35,7 +43,7 @@ RECODED = {
     "tiny-leaves": ("street-16", {"root_log2": 2, "smallest_leaf": 1, "columns": 40}),
     "large-roots": ("forest-40-small", {"root_log2": 5, "smallest_leaf": 64, "effort": 2}),
     "empty-rows": ("street-16", {"empty_rows": [0, 1, 6, 7, 8, 15], "columns": 48}),
-    "one-row": ("street-16", {"rows": 1, "elevation": [0], "columns": 64}),
+    "one-row": ("street-16", {"rows": 1, "elevation": [0], "columns": 96}),
     "one-cell": ("street-16", {"only_cell": [9, 17], "columns": 32, "residual_step": 64}),
     "no-return": ("street-16", {"empty_rows": list(range(16)), "columns": 24}),
     "single": ("street-16", {"rows": 1, "columns": 1, "only_cell": [0, 0]}),
@@ -45,8 +53,38 @@ CUT = {"cut-in-mask": ("segments", 15), "cut-in-field": ("segments", 60),
        "cut-in-residual": ("corridor-32-fine", 70)}
 
 
+# Streams of noise, which reach what no encoder would write. name: the file that gives the row
+# table, way of the mask (None: the mask of that file), parameters in the order of the file; flags:
+# root_log2, 8 residuals, 32 a turn, 64 a lattice.
+NOISE = {
+    "noise-mask-1": ("street-16", 1, (0x2B, 16, 24, 9000, 4, 500, 900, 893)),
+    "noise-mask-2": ("street-16", 2, (0x23, 16, 24, 20000, 1, 2000, 5)),
+    "noise-mask-3": ("street-16", 3, (0x2D, 16, 24, 1 << 24, 64, 1, 3000, 0)),
+    "noise-field": ("room-16-fast", None, (0x04, 16, 40, 5000, 8)),
+    "noise-residual": ("heights-offsets", None, (0x2C, 16, 40, 5000, 8, 700, 1000, 980)),
+    "noise-lattice": ("heights-offsets", None, (0x6D, 16, 40, 5000, 8, 17179869, 1000, 980)),
+}
+
+
 def run(*arguments):
     return subprocess.run([str(a) for a in arguments], check=True, stdout=subprocess.PIPE).stdout
+
+
+def noise_file(name, source, way, parameters):
+    def noise(what, size):
+        return hashlib.shake_256(f"{name} {what}".encode()).digest(size)
+    chunks = {chunk.kind: chunk.payload
+              for chunk in read_chunks((COMPACT / f"{source}.curl").read_bytes())}
+    mask = chunks[0x13]
+    if way is not None:
+        # Two plain decisions, the high bit of `way` first; a one is the lower half of the values.
+        mask = noise("mask", 700)
+        mask = bytes([(3 - way) << 6 | mask[0] & 63]) + mask[1:]
+    payload = bytes([parameters[0]]) + b"".join(varint(value) for value in parameters[1:])
+    made = [(0x10, payload), (0x11, chunks[0x11]), (0x13, mask), (0x14, noise("field", 2500))]
+    if parameters[0] & 8:
+        made.append((0x15, varint(40) + noise("flags", 40) + noise("residual", 3500)))
+    return file_of(made)
 
 
 def main(command, tool):
@@ -68,6 +106,8 @@ def main(command, tool):
     for name, (source, share) in CUT.items():
         whole = (COMPACT / f"{source}.curl").read_bytes()
         (COMPACT / f"{name}.curl").write_bytes(whole[:len(whole) * share // 100])
+    for name, arguments in NOISE.items():
+        (COMPACT / f"{name}.curl").write_bytes(noise_file(name, *arguments))
     for file in sorted(COMPACT.glob("*.curl")):
         file.with_suffix(".json").write_bytes(run(tool, "twin", file))
     files = [*COMPACT.iterdir()]

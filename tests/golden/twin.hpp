@@ -27,6 +27,15 @@ Json rows_of(const std::vector<Number>& cells, std::size_t columns) {
   return rows;
 }
 
+/// x, y, z of every n-th point from the first on.
+inline Json every_nth(const std::vector<Vec3>& points, std::size_t n) {
+  Json out = Json::array();
+  for (std::size_t i = 0; i < points.size(); i += n) {
+    out.push_back({points[i].x, points[i].y, points[i].z});
+  }
+  return out;
+}
+
 inline Json header_of(const compact::DecodedScan& scan, bool complete) {
   const compact::ScanParameters& p = scan.parameters;
   const compact::RowTable& table = scan.table;
@@ -50,8 +59,8 @@ inline Json header_of(const compact::DecodedScan& scan, bool complete) {
 }
 
 /// Of a file that may be cut off. `points`: x, y, z in metres of the cells that have a range, in
-/// raster order. `field`: null if it is `range`. `surface`: numbered through all segments, -1 where
-/// there is none.
+/// raster order, every `points_every`-th of them. `field`: null if it is `range`. `surface`:
+/// numbered through all segments, -1 where there is none.
 inline Result<Json> twin_of(ByteSpan bytes) {
   const Result<PartialContainer> file = read_container_prefix(bytes);
   if (!file) return file.error();
@@ -63,19 +72,20 @@ inline Result<Json> twin_of(ByteSpan bytes) {
   const std::size_t columns = decoded.parameters.columns;
   const compact::PointTable table(decoded.table, decoded.parameters.rows,
                                   decoded.parameters.columns);
-  Json points = Json::array();
+  std::vector<Vec3> points;
   for (std::size_t cell = 0; cell < decoded.range.size(); ++cell) {
     if (decoded.range[cell] == 0) continue;
-    const Vec3 point =
-        table.metres(static_cast<std::uint32_t>(cell / columns),
-                     static_cast<std::uint32_t>(cell % columns), decoded.range[cell]);
-    points.push_back({point.x, point.y, point.z});
+    points.push_back(table.metres(static_cast<std::uint32_t>(cell / columns),
+                                  static_cast<std::uint32_t>(cell % columns), decoded.range[cell]));
   }
   twin["range"] = rows_of(decoded.range, columns);
   const bool refined = decoded.field_range != decoded.range;
   twin["field"] = refined ? rows_of(decoded.field_range, columns) : Json();
   twin["surface"] = rows_of(decoded.surface, columns);
-  twin["points"] = std::move(points);
+  const std::size_t every = points.size() > 256 ? 5 : 1;
+  twin["returns"] = points.size();
+  twin["points_every"] = every;
+  twin["points"] = every_nth(points, every);
   return twin;
 }
 

@@ -4,7 +4,7 @@ import struct
 
 MAGIC = b"\x89CURL\r\n"
 VERSION = 1
-END, PRIVATE = 0x00, (*range(0x70, 0x80), *range(0xF0, 0x100))
+END = 0x00
 ONCE = {0x00, 0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x07, 0x10, 0x11, 0x12, 0x80}
 REPEATED = {0x13, 0x14, 0x15}
 
@@ -122,3 +122,22 @@ def _part(data):
     except Corrupt:
         return []
     return [Chunk(kind, data[reader.at:reader.at + size], whole=False)]
+
+
+def varint(value):
+    text = b""
+    while value > 127:
+        text += bytes([value & 127 | 128])
+        value >>= 7
+    return text + bytes([value])
+
+
+def chunk_bytes(kind, payload):
+    body = bytes([kind]) + varint(len(payload)) + payload
+    return body + struct.pack("<I", crc32c(body))
+
+
+def file_of(chunks):
+    """The bytes of a file with these (type, payload); for tests."""
+    bodies = b"".join(chunk_bytes(kind, payload) for kind, payload in chunks)
+    return MAGIC + bytes([VERSION]) + bodies + chunk_bytes(END, b"")

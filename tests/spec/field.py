@@ -152,7 +152,7 @@ class Field:
                 before = (dict(self.known), len(self.leaves), self.surfaces)
                 self._block(row, column, min(root, window.rows - row),
                             min(root, window.columns - column))
-                if decoder.exhausted or (cut and decoder.read >= len(decoder.data)):
+                if decoder.exhausted or (cut and decoder.read > len(decoder.data)):
                     self.known, leaves, self.surfaces = before
                     del self.leaves[leaves:]
                     self.complete = False

@@ -28,7 +28,9 @@ class SpecTest(unittest.TestCase):
         for field in ("field", "surface", "range"):
             wanted = twin[field] if twin[field] is not None else twin["range"]
             self.assertTrue(getattr(scan, field) == wanted, f"{field} differs")
-        self.assertTrue([list(point) for point in scan.points()] == twin["points"])
+        points = [list(point) for point in scan.points()]
+        self.assertEqual(len(points), twin["returns"])
+        self.assertTrue(points[::twin["points_every"]] == twin["points"])
         self.check_index(read_chunks(data, cut=True))
 
     def check_index(self, chunks):
