@@ -6,75 +6,70 @@
 namespace curlidar::compact {
 namespace {
 
-/// Counts what a MixSink would write, by part.
+/// Writes, and adds up what it costs.
+class MeteredEncoder {
+ public:
+  static constexpr bool kDecodes = false;
+
+  bool code(std::uint32_t probability_of_one, bool bit) {
+    counter_.code(probability_of_one, bit);
+    return encoder_.code(probability_of_one, bit);
+  }
+  std::uint64_t cost() const { return counter_.cost(); }
+  std::vector<std::byte> finish() && { return std::move(encoder_).finish(); }
+
+ private:
+  RangeEncoder encoder_;
+  CostCounter counter_;
+};
+
+/// A MixSink that keeps the costs of the parts of a field apart.
 class PartSink {
  public:
   static constexpr bool kDecodes = false;
 
-  PartSink(FieldModels& models, std::array<std::uint64_t, kFieldParts>& costs)
-      : mix_(counter_, models), costs_(costs) {}
+  PartSink(MeteredEncoder& encoder, FieldModels& models,
+           std::array<std::uint64_t, kFieldParts>& costs)
+      : encoder_(encoder), mix_(encoder, models), costs_(costs) {}
 
   bool bit(const Contexts& c, bool value) {
-    const std::uint64_t before = counter_.cost();
+    const std::uint64_t before = encoder_.cost();
     mix_.bit(c, value);
-    costs_[static_cast<std::size_t>(c.part)] += counter_.cost() - before;
+    costs_[static_cast<std::size_t>(c.part)] += encoder_.cost() - before;
     return value;
   }
   bool plain(FieldPart part, bool value) {
-    costs_[static_cast<std::size_t>(part)] += 256;
+    const std::uint64_t before = encoder_.cost();
+    mix_.plain(part, value);
+    costs_[static_cast<std::size_t>(part)] += encoder_.cost() - before;
     return value;
   }
 
  private:
-  CostCounter counter_;
-  MixSink<CostCounter> mix_;
+  MeteredEncoder& encoder_;
+  MixSink<MeteredEncoder> mix_;
   std::array<std::uint64_t, kFieldParts>& costs_;
 };
 
 }  // namespace
 
 EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& truth,
-                          const SearchSettings& settings, std::uint32_t passes) {
+                          const SearchSettings& settings) {
   EncodedField out;
-  CostTable costs;
-  for (std::uint32_t pass = 0; pass < passes; ++pass) {
-    state.clear();
-    FieldModels models;
-    if (pass == 0) costs = CostTable(models.models);
-    out.roots.clear();
-    out.part_cost = {};
-    PartSink counter(models, out.part_cost);
-    for (const Block& block : roots_of(state.geometry, state.settings)) {
-      const std::size_t surfaces = state.surfaces.size();
-      Node node{block, {}, {}, {}, {}};
-      PartitionSearch search(state, truth, settings, costs);
-      search.search(node);
-      // Count it as it will be written, which also teaches the costs of what follows.
-      state.surfaces.erase(state.surfaces.begin() + static_cast<std::ptrdiff_t>(surfaces),
-                           state.surfaces.end());
-      for (std::uint32_t i = 0; i < block.height; ++i) {
-        std::fill_n(state.surface.begin() +
-                        static_cast<std::ptrdiff_t>(state.cell(block.row + i, block.column)),
-                    block.width, kNoSurface);
-      }
-      code_node(counter, state, node);
-      if (pass == 0) costs = CostTable(models.models);
-      out.roots.push_back(std::move(node));
-    }
-    costs = CostTable(models.models);
-  }
-  out.part_cost = {};
-  {
-    state.clear();
-    FieldModels models;
-    PartSink counter(models, out.part_cost);
-    for (Node& node : out.roots) code_node(counter, state, node);
-  }
   state.clear();
-  RangeEncoder encoder;
+  MeteredEncoder encoder;
   FieldModels models;
-  MixSink<RangeEncoder> sink(encoder, models);
-  for (Node& node : out.roots) code_node(sink, state, node);
+  PartSink sink(encoder, models, out.part_cost);
+  for (const Block& block : roots_of(state.geometry, state.settings)) {
+    const std::size_t surfaces = state.surfaces.size();
+    Node node{block, {}, {}, {}, {}};
+    // What a root will cost is what the models have learnt from the roots before it.
+    const CostTable costs(models.models);
+    PartitionSearch(state, truth, settings, costs).search(node);
+    state.forget(block, surfaces);
+    code_node(sink, state, node);
+    out.roots.push_back(std::move(node));
+  }
   out.bytes = std::move(encoder).finish();
   return out;
 }

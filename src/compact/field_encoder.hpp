@@ -18,18 +18,18 @@ struct EncodedField {
   std::array<std::uint64_t, kFieldParts> part_cost{};  ///< 1/256 bit
 };
 
-/// `state` is filled as a decoder will have it; `truth`: range of every occupied cell, Q16.
+/// Searches, root by root, and writes what was found. `state` is filled as a decoder will have it;
+/// `truth`: range of every occupied cell, Q16. The same bytes from every compiler.
 EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& truth,
-                          const SearchSettings& settings, std::uint32_t passes);
+                          const SearchSettings& settings);
 
-/// Reads a field into `state`. Never fails: `rows_of_roots` complete before the bytes ran out are
-/// counted; `whole`: the bytes are all that was
-/// written; else their end is cut off. The nodes are kept for those who want to look at
-/// them.
+/// The roots of a field for those who want to look at them, in order.
 struct DecodedField {
   std::vector<Node> roots;
-  std::size_t complete_roots = 0;
+  std::size_t complete_roots = 0;  ///< known before the bytes ran out; those after it are not
 };
+/// Reads a field into `state`, from any bytes. `whole`: the bytes are all that was written, else
+/// their end is cut off.
 DecodedField decode_field(FieldState& state, ByteSpan bytes, bool whole = true);
 
 }  // namespace curlidar::compact

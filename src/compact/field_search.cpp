@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compact/field_search.hpp"
 
-#include <limits>
+#include <algorithm>
+#include <utility>
 
 namespace curlidar::compact {
 
@@ -14,23 +15,12 @@ CostTable::CostTable(const std::vector<BitModel>& models) {
   }
 }
 
-void PartitionSearch::forget(const Block& block, std::size_t surfaces) {
-  state_.surfaces.erase(state_.surfaces.begin() + static_cast<std::ptrdiff_t>(surfaces),
-                        state_.surfaces.end());
-  for (std::uint32_t i = 0; i < block.height; ++i) {
-    const std::size_t begin = state_.cell(block.row + i, block.column);
-    std::fill_n(state_.surface.begin() + static_cast<std::ptrdiff_t>(begin), block.width,
-                kNoSurface);
-  }
-}
-
 void PartitionSearch::place(const Node& node) {
   if (node.split != Split::none) {
     for (const Node& child : node.children) place(child);
     return;
   }
-  std::vector<std::uint32_t> cells;
-  state_.cells_of(node.block, cells);
+  const std::vector<std::uint32_t> cells = state_.cells_of(node.block);
   if (cells.empty()) return;
   const BlockContext context =
       block_context(state_, node.block, static_cast<std::uint32_t>(cells.size()));
@@ -38,45 +28,53 @@ void PartitionSearch::place(const Node& node) {
 }
 
 std::int64_t PartitionSearch::search(Node& node) {
-  std::vector<std::uint32_t> cells;
-  state_.cells_of(node.block, cells);
+  const std::vector<std::uint32_t> cells = state_.cells_of(node.block);
   if (cells.empty()) return 0;
   const std::size_t surfaces = state_.surfaces.size();
   const BlockContext context =
       block_context(state_, node.block, static_cast<std::uint32_t>(cells.size()));
-  SearchSink sink(costs_);
-  const auto split_cost = [&](Split split) {
-    sink.clear();
-    code_split(sink, context, state_.settings, split);
-    return sink.cost() * settings_.lambda;
-  };
-  std::int64_t best =
-      search_leaf(state_, truth_, settings_, costs_, context, node) + split_cost(Split::none);
-  node.split = Split::none;
-  if (cells.size() > 1 && best > 4 * 256 * settings_.lambda) {
+  std::int64_t best = search_leaf(state_, truth_, settings_, costs_, context, node) +
+                      split_cost(context, Split::none);
+  // A leaf that costs no more than the least split would is left alone.
+  constexpr std::int64_t kLeastSplit = 4 * 256;
+  if (cells.size() > 1 && best > kLeastSplit * settings_.lambda) {
     for (const Split split : {Split::quad, Split::rows, Split::columns}) {
-      if (!may_split(node.block, split, state_.settings)) continue;
-      if (split != Split::quad && node.block.height >= settings_.binary_below &&
-          may_split(node.block, Split::quad, state_.settings)) {
-        continue;
-      }
-      std::int64_t cost = split_cost(split);
+      if (!worth_trying(node.block, split)) continue;
       std::vector<Node> children;
-      for (const Block& block : children_of(node.block, split)) {
-        children.push_back({block, {}, {}, {}, {}});
-        cost += search(children.back());
-        if (cost >= best) break;
-      }
-      forget(node.block, surfaces);
+      const std::int64_t cost = search_children(context, split, best, children);
+      state_.forget(node.block, surfaces);
       if (cost >= best) continue;
       best = cost;
       node.split = split;
       node.children = std::move(children);
     }
   }
-  if (node.split == Split::none) node.children.clear();
   place(node);
   return best;
+}
+
+std::int64_t PartitionSearch::split_cost(const BlockContext& context, Split split) const {
+  SearchSink sink(costs_);
+  code_split(sink, context, state_.settings, split);
+  return sink.cost() * settings_.lambda;
+}
+
+bool PartitionSearch::worth_trying(const Block& block, Split split) const {
+  if (!may_split(block, split, state_.settings)) return false;
+  return split == Split::quad || block.height < settings_.binary_below ||
+         !may_split(block, Split::quad, state_.settings);
+}
+
+/// J of a split and of what is below it, at least `bound` if that is reached.
+std::int64_t PartitionSearch::search_children(const BlockContext& context, Split split,
+                                              std::int64_t bound, std::vector<Node>& children) {
+  std::int64_t cost = split_cost(context, split);
+  for (const Block& block : children_of(context.block, split)) {
+    if (cost >= bound) break;
+    children.push_back({block, {}, {}, {}, {}});
+    cost += search(children.back());
+  }
+  return cost;
 }
 
 }  // namespace curlidar::compact

@@ -71,7 +71,10 @@ class PartitionSearch {
   std::int64_t search(Node& node);
 
  private:
-  void forget(const Block& block, std::size_t surfaces);
+  std::int64_t split_cost(const BlockContext& context, Split split) const;
+  bool worth_trying(const Block& block, Split split) const;
+  std::int64_t search_children(const BlockContext& context, Split split, std::int64_t bound,
+                               std::vector<Node>& children);
   void place(const Node& node);
 
   FieldState& state_;

@@ -65,6 +65,14 @@ void FieldState::clear() {
   surfaces.clear();
 }
 
+void FieldState::forget(const Block& block, std::size_t kept) {
+  surfaces.erase(surfaces.begin() + static_cast<std::ptrdiff_t>(kept), surfaces.end());
+  for (std::uint32_t i = 0; i < block.height; ++i) {
+    const std::size_t begin = cell(block.row + i, block.column);
+    std::fill_n(surface.begin() + static_cast<std::ptrdiff_t>(begin), block.width, kNoSurface);
+  }
+}
+
 const PatchShape& FieldState::shape(const Block& block) {
   const std::array<std::uint32_t, 3> key = {block.row, block.height, block.width};
   const auto found = shapes_.find(key);

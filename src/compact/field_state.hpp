@@ -74,6 +74,8 @@ class FieldState {
   }
   /// Forgets everything coded.
   void clear();
+  /// Forgets what was coded of a block, and all surfaces but the first `kept`.
+  void forget(const Block& block, std::size_t kept);
 
  private:
   std::map<std::array<std::uint32_t, 3>, PatchShape> shapes_;

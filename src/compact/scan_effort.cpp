@@ -13,19 +13,18 @@ namespace {
 struct EffortRow {
   std::uint32_t max_layers, max_functions, fitted_parents, reweighted_passes, layer_passes;
   std::uint32_t binary_below;
-  std::uint32_t passes;
 };
 
 constexpr std::array<EffortRow, kMostEffort> kEfforts = {{
-    {2, 2, 1, 0, 1, 1, 1},
-    {3, 3, 1, 1, 1, 1, 1},
-    {3, 3, 2, 1, 2, 1, 1},
-    {4, 3, 2, 1, 2, 1, 1},
-    {4, 3, 2, 1, 2, 16, 1},
-    {4, 3, 2, 2, 2, 16, 1},
-    {4, 3, 3, 2, 3, 16, 1},
-    {4, 3, 3, 2, 3, 32, 1},
-    {4, 3, 5, 2, 3, 32, 1},
+    {2, 2, 1, 0, 1, 1},
+    {3, 3, 1, 1, 1, 1},
+    {3, 3, 2, 1, 2, 1},
+    {4, 3, 2, 1, 2, 1},
+    {4, 3, 2, 1, 2, 16},
+    {4, 3, 2, 2, 2, 16},
+    {4, 3, 3, 2, 3, 16},
+    {4, 3, 3, 2, 3, 32},
+    {4, 3, 5, 2, 3, 32},
 }};
 
 constexpr std::int32_t kCoarseStep = 3 * kRangeUnit / 10;
@@ -60,7 +59,6 @@ Effort search_settings(std::uint32_t effort, std::int32_t step, std::int32_t res
                        std::uint32_t lambda_per_mille) {
   const EffortRow& row = kEfforts[std::clamp(effort, kLeastEffort, kMostEffort) - 1];
   Effort out;
-  out.passes = row.passes;
   out.thorough_mask = effort >= 5;
   SearchSettings& s = out.search;
   s.max_layers = row.max_layers;

@@ -17,7 +17,6 @@ inline constexpr std::uint32_t kLambdaPerMille = 170;
 /// How hard an encoder searches.
 struct Effort {
   SearchSettings search;
-  std::uint32_t passes = 1;  ///< over the field, each with costs learnt by the one before
   bool thorough_mask = false;
   /// Of the residual layer: what a bit is worth, Q16 metres, and residual_cost_table.
   std::int64_t residual_lambda = 0;

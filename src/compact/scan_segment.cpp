@@ -192,7 +192,7 @@ EncodedSegment encode_segment(const Image& image, const RowTable& table,
 
   const Geometry geometry = geometry_of(table, place);
   FieldState state(geometry, scan.occupied, field_settings(parameters));
-  EncodedField field = encode_field(state, truth, effort.search, effort.passes);
+  EncodedField field = encode_field(state, truth, effort.search);
   out.field = std::move(field.bytes);
   out.part_cost = field.part_cost;
   take_field(state, table, place, scan);

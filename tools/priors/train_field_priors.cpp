@@ -104,7 +104,7 @@ void remove_ring_offsets(Grid& grid) {
   const FieldSettings settings{kRangeUnit * 3 / 10, 4, 8};
   for (int round = 0; round < 2; ++round) {
     FieldState state(*grid.geometry, grid.occupied, settings);
-    encode_field(state, grid.ranges, search_for(settings.step), 1);
+    encode_field(state, grid.ranges, search_for(settings.step));
     const std::size_t columns = grid.geometry->columns();
     for (std::size_t row = 0; row < grid.geometry->rows(); ++row) {
       std::vector<std::int32_t> left;
@@ -144,7 +144,7 @@ FieldScan search_scan(const Grid& grid, const std::string& name, int step_mm) {
     }
   }
   FieldState state(*grid.geometry, grid.occupied, scan.settings);
-  scan.roots = encode_field(state, grid.ranges, search, 1).roots;
+  scan.roots = encode_field(state, grid.ranges, search).roots;
   return scan;
 }
 

@@ -63,7 +63,7 @@ TEST(FieldCoder, DecodesWhatTheEncoderSaw) {
     for (const std::int32_t step : {kRangeUnit, kRangeUnit / 10, kRangeUnit / 100}) {
       const FieldSettings settings{step, 4, 8};
       FieldState coded(scene.geometry, scene.occupied, settings);
-      const EncodedField field = encode_field(coded, scene.ranges, settings_for(step), 2);
+      const EncodedField field = encode_field(coded, scene.ranges, settings_for(step));
       FieldState decoded(scene.geometry, scene.occupied, settings);
       const DecodedField read = decode_field(decoded, field.bytes);
       EXPECT_EQ(read.complete_roots, roots_of(scene.geometry, settings).size());
@@ -83,7 +83,7 @@ TEST(FieldCoder, FinerStepsGiveSmallerErrorsForMoreBits) {
   std::size_t size = 0;
   for (const std::int32_t step : {kRangeUnit, kRangeUnit / 4, kRangeUnit / 16, kRangeUnit / 64}) {
     FieldState state(scene.geometry, scene.occupied, {step, 4, 8});
-    const EncodedField field = encode_field(state, scene.ranges, settings_for(step), 1);
+    const EncodedField field = encode_field(state, scene.ranges, settings_for(step));
     EXPECT_LT(mean_error(scene, state), error);
     EXPECT_GT(field.bytes.size(), size);
     error = mean_error(scene, state);
@@ -105,7 +105,7 @@ TEST(FieldCoder, OnePlaneIsOneSurfaceInherited) {
         scene.occupied[p] ? static_cast<std::int32_t>((std::int64_t{1} << 46) / inverse) : 0;
   }
   FieldState state(scene.geometry, scene.occupied, {kRangeUnit / 20, 4, 8});
-  const EncodedField field = encode_field(state, scene.ranges, settings_for(kRangeUnit / 20), 1);
+  const EncodedField field = encode_field(state, scene.ranges, settings_for(kRangeUnit / 20));
   EXPECT_LT(field.bytes.size(), 80u);
   EXPECT_LT(mean_error(scene, state), 0.02);
 }
@@ -114,7 +114,7 @@ TEST(FieldCoder, CutBytesGiveTheRootsBeforeTheCut) {
   const Scene scene = make_scene(32, 128, 3);
   const FieldSettings settings{kRangeUnit / 10, 4, 8};
   FieldState whole(scene.geometry, scene.occupied, settings);
-  const EncodedField field = encode_field(whole, scene.ranges, settings_for(settings.step), 1);
+  const EncodedField field = encode_field(whole, scene.ranges, settings_for(settings.step));
   const std::vector<Block> roots = roots_of(scene.geometry, settings);
   std::size_t before = 0;
   for (std::size_t size = 0; size + 4 < field.bytes.size(); size += 7) {
@@ -149,7 +149,7 @@ TEST(FieldCoder, MostEffortFindsNoWorseThanLittle) {
   const Scene scene = make_scene(32, 128, 6);
   const auto cost = [&](const SearchSettings& settings) {
     FieldState state(scene.geometry, scene.occupied, {kRangeUnit / 10, 4, 8});
-    const EncodedField field = encode_field(state, scene.ranges, settings, 1);
+    const EncodedField field = encode_field(state, scene.ranges, settings);
     double errors = 0;
     for (std::size_t p = 0; p < scene.ranges.size(); ++p) {
       if (scene.occupied[p]) errors += std::abs(scene.ranges[p] - state.range[p]);

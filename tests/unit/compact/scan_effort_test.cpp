@@ -48,14 +48,15 @@ TEST(ScanEffort, MoreEffortNeverSearchesLess) {
   for (std::uint32_t effort = 2; effort <= 9; ++effort) {
     const Effort less = search_settings(effort - 1, 3277, 0),
                  more = search_settings(effort, 3277, 0);
-    EXPECT_GE(more.passes, less.passes);
     EXPECT_GE(more.search.max_layers, less.search.max_layers);
     EXPECT_GE(more.search.max_functions, less.search.max_functions);
     EXPECT_EQ(more.search.lambda, less.search.lambda);
     EXPECT_TRUE(more.search.residual_costs.empty());
   }
-  EXPECT_EQ(search_settings(0, 3277, 0).passes, search_settings(1, 3277, 0).passes);
-  EXPECT_EQ(search_settings(99, 3277, 0).passes, search_settings(9, 3277, 0).passes);
+  EXPECT_EQ(search_settings(0, 3277, 0).search.max_layers,
+            search_settings(1, 3277, 0).search.max_layers);
+  EXPECT_EQ(search_settings(99, 3277, 0).search.fitted_parents,
+            search_settings(9, 3277, 0).search.fitted_parents);
 }
 
 }  // namespace
