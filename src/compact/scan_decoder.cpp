@@ -66,6 +66,22 @@ Result<SegmentViews> segment_views(const ScanChunks& chunks, const ScanParameter
   return views;
 }
 
+/// Even the surest bit takes more than 1/2048 bit (kMinProbability), so a mask of few bytes cannot
+/// hold many cells: refused here, before memory is taken for them.
+Status check_mask_sizes(const std::vector<DecodedSegment>& segments,
+                        const std::vector<ScanChunkView>& masks) {
+  constexpr std::uint64_t cells_per_byte = 8 * 2048;
+  for (std::size_t i = 0; i < std::min(segments.size(), masks.size()); ++i) {
+    if (!segments[i].wanted || !masks[i].whole) continue;
+    const std::uint64_t cells = segments[i].place.cells();
+    if (cells <= (masks[i].payload.size() + 8) * cells_per_byte) continue;
+    return scan_error(
+        ErrorCode::corrupt, ScanPart::mask, masks[i].offset,
+        fmt::format("{} bytes are too few for {} cells", masks[i].payload.size(), cells));
+  }
+  return {};
+}
+
 SegmentChunk chunk_of(const std::vector<ScanChunkView>& views, std::size_t segment) {
   if (segment >= views.size()) return {};
   return {true, views[segment].whole, views[segment].payload};
@@ -207,6 +223,7 @@ Result<DecodedScan> decode_scan(const ScanChunks& chunks, const ScanLimits& limi
   out.table = std::move(header.table);
   out.segments = wanted_segments(out.parameters, options.region);
   CURLIDAR_TRY_ASSIGN(views, segment_views(chunks, out.parameters, out.segments.size()));
+  CURLIDAR_TRY(check_mask_sizes(out.segments, views[0]));
 
   const std::size_t parts = options.field_only ? 2 : parts_of(out.parameters);
   const auto residual_of = [&](std::size_t i) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "compact/scan_header.hpp"
 #include "support/chunks.hpp"
 #include "support/clouds.hpp"
 #include "support/compact_files.hpp"
@@ -134,6 +135,27 @@ TEST(ScanDamage, LimitsAreCheckedBeforeAnything) {
   const auto refused = decode_scan(chunks, {18 * 40 - 1});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::limit_exceeded);
+}
+
+TEST(ScanDamage, AFewBytesDoNotTakeTheMemoryOfManyCells) {
+  ScanParameters parameters;
+  RowTable table;
+  parameters.rows = 1024;
+  parameters.columns = table.turn_columns = 65536;
+  parameters.step = 1000;
+  table.elevation.resize(parameters.rows);
+  const std::vector<std::byte> header = write_parameters(parameters, table);
+  const std::vector<std::byte> rows = write_rows(table);
+  const std::vector<std::byte> mask(40), field(40);
+  ScanChunks chunks;
+  chunks.chunks = {{ScanPart::parameters, header},
+                   {ScanPart::sensor, rows},
+                   {ScanPart::mask, mask, 77},
+                   {ScanPart::field, field}};
+  const auto refused = decode_scan(chunks);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message,
+            "compact_mask chunk, byte 77: 40 bytes are too few for 67108864 cells");
 }
 
 TEST(ScanDamage, AnyDamageEndsWell) {
