@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes the inputs that fuzzing starts from: small simulated scans, encoded in many ways.
+//   make_seeds FOLDER    makes FOLDER/TARGET/seed-NAME for every target but cloud
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "codec/compact_decode.hpp"
+#include "compact/mask_coder.hpp"
+#include "compact/residual_coder.hpp"
+#include "compact/scan_encoder.hpp"
+#include "curlidar/codec.hpp"
+#include "curlidar/simulate.hpp"
+#include "hostile/targets/container.hpp"
+#include "hostile/targets/decode.hpp"
+#include "hostile/targets/field.hpp"
+#include "hostile/targets/mask.hpp"
+#include "hostile/targets/residual.hpp"
+#include "hostile/targets/scan.hpp"
+
+namespace curlidar::fuzz {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+class Seeds {
+ public:
+  explicit Seeds(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  void write(const std::string& target, const std::string& name, const Bytes& bytes) const {
+    std::filesystem::create_directories(folder_ / target);
+    std::ofstream file(folder_ / target / ("seed-" + name), std::ios::binary);
+    for (const std::byte b : bytes) file.put(static_cast<char>(b));
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+void append(Bytes& to, ByteSpan bytes) {
+  to.insert(to.end(), bytes.begin(), bytes.end());
+}
+void append(Bytes& to, std::initializer_list<std::size_t> numbers) {
+  for (const std::size_t number : numbers) to.push_back(static_cast<std::byte>(number & 0xff));
+}
+Bytes packed(const std::vector<std::uint8_t>& flags) {
+  Bytes bits((flags.size() + 7) / 8);
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    if (flags[i] != 0) bits[i / 8] |= std::byte{1} << (i % 8);
+  }
+  return bits;
+}
+
+Cloud scan_of(const char* scene, std::size_t rings, std::uint32_t columns) {
+  constexpr double degree = std::numbers::pi / 180;
+  SensorProfile sensor;
+  sensor.name = "small";
+  sensor.columns = columns;
+  sensor.fov_up = 10 * degree;
+  sensor.fov_down = -20 * degree;
+  sensor.max_range_m = 100;
+  for (std::size_t i = 0; i < rings; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(rings - 1);
+    sensor.rings.push_back({.elevation = (10 - 30 * share) * degree});
+  }
+  return simulate(**make_scene(scene), sensor).value();
+}
+
+EncodeSettings settings_for(Profile profile, double error_m, std::uint32_t columns) {
+  EncodeSettings settings;
+  settings.profile = profile;
+  settings.compact.columns = columns;
+  settings.compact.target_value = error_m;
+  settings.compact.effort = 2;
+  settings.paper = for_profile(settings.paper, profile);
+  settings.paper.columns = columns;
+  settings.paper.min_range_m = 1;
+  settings.paper.max_range = {};
+  settings.paper.global_degree = 6;
+  settings.attributes = std::vector<std::string>{"intensity"};
+  return settings;
+}
+
+/// The chunks of a file behind a header: of all types, or of those of a compact scan.
+Bytes reframed(ByteSpan file, std::initializer_list<std::size_t> header, bool scan_only) {
+  Bytes out;
+  append(out, header);
+  const std::vector<Chunk> chunks = read_container(file).value();
+  for (const Chunk& chunk : chunks) {
+    const auto type = static_cast<std::uint8_t>(chunk.type);
+    if (scan_only && (type < 0x10 || type > 0x15)) continue;
+    test::write_fuzz_chunk(scan_only ? static_cast<std::uint8_t>(type - 0x10) : type, chunk.payload,
+                           out);
+  }
+  return out;
+}
+
+void write_files(const Seeds& seeds) {
+  const Profile paper[] = {Profile::paper, Profile::paper_1to1, Profile::paper_global};
+  for (const Profile profile : paper) {
+    const auto file = encode(scan_of("room", 6, 32), settings_for(profile, 0.05, 32))->bytes;
+    seeds.write("decode", to_string(profile), reframed(file, {0, 0}, false));
+  }
+  for (const char* scene : {"street", "room", "forest"}) {
+    for (const double error_m : {0.05, 0.005}) {
+      const std::string name = std::string(scene) + (error_m < 0.01 ? "-fine" : "");
+      EncodeSettings settings = settings_for(Profile::compact, error_m, 64);
+      const Cloud scan = scan_of(scene, 12, 64);
+      seeds.write("decode", name, reframed(encode(scan, settings)->bytes, {4, 0}, false));
+      settings.attributes = std::vector<std::string>{};
+      const auto file = encode(scan, settings)->bytes;
+      seeds.write("decode", name + "-part", reframed(file, {7, 0}, false));
+      seeds.write("decode", name + "-cut", reframed(file, {8, 200}, false));
+      seeds.write("scan", name, reframed(file, {test::kNodes, 0, 0, 0, 0}, true));
+    }
+  }
+}
+
+/// Images of simulated scans, as the parts below take them.
+CompactImage image_of(const char* scene, std::size_t rings, std::uint32_t columns) {
+  const auto file =
+      encode(scan_of(scene, rings, columns), settings_for(Profile::compact, 0.005, columns))->bytes;
+  return *decode_compact_image(file, {});
+}
+
+void write_scans(const Seeds& seeds, const std::string& scene, const CompactImage& scan) {
+  for (const std::int32_t residual_step : {0, 700}) {
+    for (const std::uint32_t cuts : {1u, 2u}) {
+      compact::ScanSettings settings;
+      settings.steps = {4000, residual_step, 0, 3, 4};
+      settings.effort = 2;
+      settings.bands = settings.sectors = cuts;
+      settings.threads = 1;
+      const auto encoded = encode_scan(scan.image, scan.table, settings);
+      Bytes out;
+      append(out,
+             {residual_step == 0 ? test::kRegion : test::kIncomplete | test::kTorn, 3, 7, 5, 50});
+      for (const compact::ScanChunk& chunk : encoded->chunks) {
+        test::write_fuzz_chunk(static_cast<std::uint8_t>(static_cast<unsigned>(chunk.part) - 0x10),
+                               chunk.payload, out);
+      }
+      seeds.write("scan", scene + "-" + std::to_string(residual_step) + "-" + std::to_string(cuts),
+                  out);
+    }
+  }
+}
+
+std::vector<std::uint8_t> mask_of(const compact::Image& image) {
+  std::vector<std::uint8_t> mask;
+  for (const std::int32_t range : image.range) mask.push_back(range > 0 ? 1 : 0);
+  return mask;
+}
+
+void write_masks(const Seeds& seeds, const std::string& scene, const compact::Image& image) {
+  const std::size_t rows = image.rows, columns = image.columns;
+  for (const std::size_t options : {0u, 1u, 5u}) {
+    const std::size_t turns[] = {columns, 2 * columns, 2048, std::size_t{1} << 22};
+    Bytes out;
+    append(out, {rows - 1, columns - 1, options});
+    append(out, compact::encode_mask(mask_of(image), {rows, columns, turns[options >> 1]}, true));
+    seeds.write("mask", scene + "-" + std::to_string(options), out);
+  }
+}
+
+void write_fields(const Seeds& seeds, const std::string& scene, const compact::Image& image) {
+  for (const std::size_t step : {65536u, 6554u, 655u}) {
+    for (const std::size_t root_log2 : {3u, 4u, 5u}) {
+      const std::size_t smallest = root_log2 == 3 ? 1 : 8;
+      Bytes out;
+      append(out, {step - 1, (step - 1) >> 8, (step - 1) >> 16, root_log2 - 1, smallest - 1, 0,
+                   image.rows - 1, image.columns - 1, 1u << 4});
+      append(out, packed(mask_of(image)));
+      const test::FieldInput input = test::field_input(out);
+      compact::FieldState state(input.geometry, input.occupied, input.settings);
+      compact::SearchSettings search;
+      search.lambda = static_cast<std::int64_t>(step * 17 / 100);
+      append(out, encode_field(state, image.range, search, 1).bytes);
+      seeds.write("field", scene + "-" + std::to_string(step) + "-" + std::to_string(root_log2),
+                  out);
+    }
+  }
+}
+
+void write_residuals(const Seeds& seeds, const std::string& scene, const compact::Image& image) {
+  for (const std::size_t kinds : {0x04u, 0x05u, 0x16u, 0x45u, 0x85u}) {
+    const std::size_t step = 500;
+    Bytes out;
+    append(out, {image.rows - 1, image.columns - 1, kinds, step - 1, (step - 1) >> 8, 0, 7});
+    append(out, packed(mask_of(image)));
+    if ((kinds >> 4 & 3) == 1) append(out, packed(mask_of(image)));
+    const test::ResidualInput input = test::residual_input(out);
+    std::vector<std::int32_t> ranges = image.range, decoded(ranges.size());
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      if ((kinds & 3) == 1) ranges[i] = input.field[i] + (ranges[i] - input.field[i]) / 64;
+    }
+    append(out, encode_residual(input.segment(), ranges, input.levels, 0, decoded));
+    seeds.write("residual", scene + "-" + std::to_string(kinds), out);
+  }
+}
+
+void write_all(const Seeds& seeds) {
+  write_files(seeds);
+  for (const char* scene : {"street", "room"}) {
+    const CompactImage scan = image_of(scene, 12, 64);
+    write_scans(seeds, scene, scan);
+    write_masks(seeds, scene, scan.image);
+    write_fields(seeds, scene, scan.image);
+    write_residuals(seeds, scene, scan.image);
+  }
+  seeds.write("container", "every-chunk", test::whole_file());
+}
+
+}  // namespace
+}  // namespace curlidar::fuzz
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fputs("usage: make_seeds FOLDER\n", stderr);
+    return 2;
+  }
+  curlidar::fuzz::write_all(curlidar::fuzz::Seeds(argv[1]));
+  return 0;
+}

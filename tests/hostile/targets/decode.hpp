@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whole .curl files of every profile: decoded, listed, reconstructed.
+#pragma once
+
+#include <string>
+
+#include "curlidar/codec.hpp"
+#include "hostile/targets/chunks.hpp"
+#include "support/chunks.hpp"
+
+namespace curlidar::test {
+
+/// First byte of an input that is not a .curl file.
+enum DecodeInputOption : std::uint32_t {
+  kWithoutResiduals = 1,
+  kPartOnly = 2,
+  kPartition = 4,
+  kCut = 8,  ///< the file is cut to as many 256ths of its size as the second byte says
+};
+inline constexpr std::size_t kDecodeHeader = 2;
+
+/// A file of the input's chunks.
+inline std::vector<std::byte> framed(FuzzInput& input) {
+  ContainerWriter writer;
+  for (const FuzzChunk& chunk : read_fuzz_chunks(input)) {
+    writer.add(static_cast<ChunkType>(chunk.type), chunk.payload);
+  }
+  return std::move(writer).finish();
+}
+
+inline std::string check_decoded(ByteSpan file, const DecodeOptions& options) {
+  const auto chunks = list_chunks(file);
+  const auto scan = decode(file, options);
+  if (!scan) return scan.error().message.empty() ? "an error without a message" : "";
+  if (!chunks && !options.allow_truncated) return "decoded, but not to be listed";
+  const bool compact = scan->compact.has_value();
+  if (compact && scan->points.size() != scan->coded_returns) return "points are not the returns";
+  if (scan->field == nullptr) return "no field";
+  ReconstructSettings settings;
+  settings.max_points = 1u << 14;
+  if (const auto cloud = reconstruct(*scan, settings); cloud && compact) {
+    if (cloud->positions.size() != scan->points.size()) return "not one point for each return";
+    for (const Attribute& attribute : cloud->attributes) {
+      if (size_of(attribute.values) != cloud->positions.size() * attribute.components) {
+        return "an attribute of another length";
+      }
+    }
+  }
+  settings.rows = 1.5;
+  settings.columns = 0.7;
+  settings.masks = false;
+  settings.organised = true;
+  (void)reconstruct(*scan, settings);
+  return "";
+}
+
+/// Inputs that start as a .curl file are one, with its checksums put right; others are options and
+/// chunks. Either way the library sees files whose framing is right.
+inline std::string decode_target(ByteSpan bytes) {
+  DecodeOptions options;
+  options.limits.max_cells = 1u << 13;
+  options.limits.max_bytes = 1u << 20;
+  if (is_curl(bytes)) {
+    if (bytes.size() < kHeaderSize) return "";
+    options.partition = true;
+    return check_decoded(with_right_checksums(bytes), options);
+  }
+  FuzzInput input(bytes);
+  const std::uint32_t flags = input.byte();
+  const std::size_t kept = input.byte();
+  std::vector<std::byte> file = framed(input);
+  options.field_only = (flags & kWithoutResiduals) != 0;
+  options.partition = (flags & kPartition) != 0;
+  if ((flags & kPartOnly) != 0) options.region = ScanRegion{1, 9, -1, 2};
+  if ((flags & kCut) != 0) {
+    options.allow_truncated = true;
+    file.resize(file.size() * kept / 256);
+  }
+  return check_decoded(file, options);
+}
+
+}  // namespace curlidar::test
