@@ -177,7 +177,7 @@ void write_fields(const Seeds& seeds, const std::string& scene, const compact::I
       compact::FieldState state(input.geometry, input.occupied, input.settings);
       compact::SearchSettings search;
       search.lambda = static_cast<std::int64_t>(step * 17 / 100);
-      append(out, encode_field(state, image.range, search, 1).bytes);
+      append(out, encode_field(state, image.range, search).bytes);
       seeds.write("field", scene + "-" + std::to_string(step) + "-" + std::to_string(root_log2),
                   out);
     }

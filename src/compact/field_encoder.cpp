@@ -9,8 +9,6 @@ namespace {
 /// Writes, and adds up what it costs.
 class MeteredEncoder {
  public:
-  static constexpr bool kDecodes = false;
-
   bool code(std::uint32_t probability_of_one, bool bit) {
     counter_.code(probability_of_one, bit);
     return encoder_.code(probability_of_one, bit);
@@ -74,7 +72,7 @@ EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& tr
   return out;
 }
 
-DecodedField decode_field(FieldState& state, ByteSpan bytes, bool whole) {
+DecodedField decode_field(FieldState& state, ByteSpan bytes, bool whole, bool keep_nodes) {
   DecodedField out;
   RangeDecoder decoder(bytes);
   FieldModels models;
@@ -84,7 +82,7 @@ DecodedField decode_field(FieldState& state, ByteSpan bytes, bool whole) {
     code_node(sink, state, node);
     if (whole ? decoder.exhausted() : decoder.past_end()) break;
     ++out.complete_roots;
-    out.roots.push_back(std::move(node));
+    if (keep_nodes) out.roots.push_back(std::move(node));
   }
   return out;
 }

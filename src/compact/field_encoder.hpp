@@ -25,11 +25,12 @@ EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& tr
 
 /// The roots of a field for those who want to look at them, in order.
 struct DecodedField {
-  std::vector<Node> roots;
+  std::vector<Node> roots;         ///< if they are to be kept
   std::size_t complete_roots = 0;  ///< known before the bytes ran out; those after it are not
 };
 /// Reads a field into `state`, from any bytes. `whole`: the bytes are all that was written, else
-/// their end is cut off.
-DecodedField decode_field(FieldState& state, ByteSpan bytes, bool whole = true);
+/// their end is cut off. Nodes take some 300 bytes a leaf.
+DecodedField decode_field(FieldState& state, ByteSpan bytes, bool whole = true,
+                          bool keep_nodes = true);
 
 }  // namespace curlidar::compact

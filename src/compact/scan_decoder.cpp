@@ -155,7 +155,11 @@ void put_segment(SegmentScan& scan, DecodedSegment& segment, DecodedScan& out) {
   put_plane(scan.surface, place, columns, static_cast<std::int32_t>(segment.first_surface),
             kNoSurface, out.surface);
   put_plane(scan.leaf, place, columns, static_cast<std::int32_t>(segment.first_leaf), -1, out.leaf);
-  out.surfaces.insert(out.surfaces.end(), scan.surfaces.begin(), scan.surfaces.end());
+  if (out.surfaces.empty()) {
+    out.surfaces = std::move(scan.surfaces);
+  } else {
+    out.surfaces.insert(out.surfaces.end(), scan.surfaces.begin(), scan.surfaces.end());
+  }
   for (DecodedLeaf leaf : scan.leaves) {
     leaf.first_surface += segment.first_surface;
     out.leaves.push_back(leaf);

@@ -227,10 +227,10 @@ SegmentScan decode_segment(const RowTable& table, const ScanParameters& paramete
 
   const Geometry geometry = geometry_of(table, place);
   FieldState state(geometry, out.occupied, field_settings(parameters));
-  DecodedField decoded = decode_field(state, field.payload, field.whole);
+  DecodedField decoded = decode_field(state, field.payload, field.whole, keep_nodes);
   out.roots = decoded.complete_roots;
   forget_torn_root(state, out.roots);
-  if (keep_nodes) out.nodes = std::move(decoded.roots);
+  out.nodes = std::move(decoded.roots);
   take_field(state, table, place, out);
   if (residual.present && out.roots == out.total_roots) {
     read_residual(state, table, parameters, place, residual, out);
