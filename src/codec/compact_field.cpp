@@ -25,6 +25,24 @@ compact::Direction to_direction(double x, double y, double z) {
   return {unit(x), unit(y), unit(z)};
 }
 
+/// For each row the nearest that is known, of two the one above; their count where none is.
+std::vector<std::uint32_t> nearest_known(const std::vector<bool>& known) {
+  const auto rows = static_cast<std::uint32_t>(known.size());
+  std::vector<std::uint32_t> nearest(rows, rows);
+  std::uint32_t last = rows;
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    if (known[row]) last = row;
+    nearest[row] = last;
+  }
+  last = rows;
+  for (std::uint32_t row = rows; row-- > 0;) {
+    if (known[row]) last = row;
+    if (last == rows) continue;
+    if (nearest[row] == rows || last - row < row - nearest[row]) nearest[row] = last;
+  }
+  return nearest;
+}
+
 /// For every cell a coded one near it: the nearest in its row, else in rows further and further
 /// away. Enough for views of a scan without masks.
 std::vector<std::uint32_t> nearest_coded(const std::vector<std::int32_t>& range, std::uint32_t rows,
@@ -52,16 +70,12 @@ std::vector<std::uint32_t> nearest_coded(const std::vector<std::int32_t>& range,
       known[row] = last != kNone;
     }
   }
+  const std::vector<std::uint32_t> rows_near = nearest_known(known);
   for (std::uint32_t row = 0; row < rows; ++row) {
-    if (known[row]) continue;
-    for (std::uint32_t d = 1; d < rows; ++d) {
-      const bool above = row >= d && known[row - d], below = row + d < rows && known[row + d];
-      if (!above && !below) continue;
-      const std::size_t from = std::size_t{above ? row - d : row + d} * columns;
-      std::copy_n(nearest.begin() + static_cast<std::ptrdiff_t>(from), columns,
-                  nearest.begin() + static_cast<std::ptrdiff_t>(std::size_t{row} * columns));
-      break;
-    }
+    const std::uint32_t from = rows_near[row];
+    if (from == row || from == rows) continue;
+    std::copy_n(nearest.begin() + static_cast<std::ptrdiff_t>(std::size_t{from} * columns), columns,
+                nearest.begin() + static_cast<std::ptrdiff_t>(std::size_t{row} * columns));
   }
   return nearest;
 }

@@ -16,8 +16,9 @@
 namespace curlidar::compact {
 
 struct ScanLimits {
-  /// Rows * columns. Checked before anything is allocated; a decoder takes some 100 bytes a cell,
-  /// and for hostile bytes, which may make every cell a leaf, at most some 1000.
+  /// Rows * columns; at most 2^31 - 1 in any case. Checked before anything is allocated; a decoder
+  /// takes some 100 bytes a cell, and for hostile bytes, which may make every cell a leaf, at most
+  /// some 1000.
   std::uint64_t max_cells = std::uint64_t{1} << 26;
 };
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/try.hpp"
 #include "compact/row_sequence.hpp"
 
@@ -183,11 +185,13 @@ Result<ScanHeader> read_parameters(const ScanChunkView& chunk, const ScanLimits&
   if (const std::string fault = fault_of(p, t); !fault.empty()) {
     return scan_error(ErrorCode::corrupt, chunk.part, chunk.offset, fault);
   }
-  if (std::uint64_t{p.rows} * p.columns > limits.max_cells) {
+  // Cells and surfaces are numbered in 31 bits.
+  const std::uint64_t most = std::min<std::uint64_t>(limits.max_cells, INT32_MAX);
+  if (std::uint64_t{p.rows} * p.columns > most) {
     return scan_error(ErrorCode::limit_exceeded, chunk.part, chunk.offset,
                       fmt::format("{} x {} cells are more than the limit of {}; raise it if the "
                                   "file is trusted",
-                                  p.rows, p.columns, limits.max_cells));
+                                  p.rows, p.columns, most));
   }
   return header;
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "curlidar/codec.hpp"
 #include "support/scans.hpp"
@@ -40,6 +41,26 @@ double range_at(const Field& field, double row, double column, bool masked = tru
   std::array<double, 1> range{};
   field.evaluate_row(row, std::array{column}, masked, range);
   return range[0];
+}
+
+TEST(CompactField, RowsWithoutReturnsTakeTheNearestRow) {
+  const SensorProfile sensor = test::small_sensor();
+  Cloud cloud = round_room(false);
+  for (std::uint32_t row = 0; row < cloud.height; ++row) {
+    for (std::uint32_t column = 0; column < cloud.width; ++column) {
+      Vec3& point = cloud.positions[std::size_t{row} * cloud.width + column];
+      point = row == 3 ? point * 0.5 : row == 21 ? point : Vec3{};
+    }
+  }
+  EncodeSettings settings;
+  settings.sensor = sensor;
+  settings.compact.target_value = 0.01;
+  const auto scan = decode(encode(cloud, settings)->bytes);
+  ASSERT_EQ(scan->field->lattice().rows(), 24u);
+  for (const auto& [row, from] : {std::pair{0, 3}, {11, 3}, {12, 3}, {13, 21}, {23, 21}}) {
+    EXPECT_EQ(range_at(*scan->field, row, 40, false), range_at(*scan->field, from, 40)) << row;
+    EXPECT_TRUE(std::isnan(range_at(*scan->field, row, 40)));
+  }
 }
 
 TEST(CompactField, CellsHaveExactlyTheirCodedRanges) {

@@ -158,6 +158,20 @@ TEST(ScanDamage, AFewBytesDoNotTakeTheMemoryOfManyCells) {
             "compact_mask chunk, byte 77: 40 bytes are too few for 67108864 cells");
 }
 
+TEST(ScanDamage, NoLimitAllowsMoreCellsThanHaveNumbers) {
+  ScanParameters parameters;
+  RowTable table;
+  parameters.rows = kMaxRows;
+  parameters.columns = table.turn_columns = kMaxTurnColumns;
+  parameters.step = 1000;
+  const std::vector<std::byte> header = write_parameters(parameters, table);
+  ScanChunks chunks;
+  chunks.chunks = {{ScanPart::parameters, header}};
+  const auto refused = decode_scan_header(chunks, {UINT64_MAX});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::limit_exceeded);
+}
+
 TEST(ScanDamage, AnyDamageEndsWell) {
   test::Random random(17);
   for (const std::int32_t residual_step : {0, 800}) {
