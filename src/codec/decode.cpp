@@ -30,6 +30,7 @@ Result<std::shared_ptr<const Field>> read_field(const std::vector<Chunk>& chunks
         GlobalModel{lattice, parameters.paper, std::move(masks), std::move(coefficients)}));
   }
   CURLIDAR_TRY_ASSIGN(chunk, require_chunk(chunks, ChunkType::patches));
+  CURLIDAR_TRY(check_patches(parameters.paper, lattice));
   const PatchGrid grid(lattice, parameters.paper.upsample_rows, parameters.paper.upsample_columns,
                        parameters.paper.patch, parameters.paper.overlap);
   CURLIDAR_TRY_ASSIGN(patches, read_patches(chunk, grid, limits.max_bytes));

@@ -103,6 +103,12 @@ Result<Encoded> encode_paper(const Cloud& cloud, const EncodeSettings& settings,
   Encoded out;
   EncodeReport& report = out.report;
   report.stages_ms.push_back({"detect", watch.lap_ms()});
+  const PaperSettings& paper = prepared.settings;
+  if (settings.profile != Profile::paper_global) {
+    CURLIDAR_TRY(check_patches(paper, make_lattice({paper.row_rule, paper.rows, paper.columns,
+                                                    paper.min_range_m, paper.max_range},
+                                                   prepared.detection.sensor)));
+  }
 
   const PaperStages stages = run_stages(cloud, prepared.detection, prepared.settings,
                                         {.threads = settings.threads}, progress);

@@ -41,6 +41,12 @@ CellRect PatchGrid::window(std::size_t patch_row, std::size_t patch_column) cons
   return rect;
 }
 
+std::uint64_t PatchGrid::basis_work() const {
+  const std::uint64_t cells = window(patch_rows_ / 2, 0).cells();
+  const std::uint64_t functions = std::min<std::uint64_t>(cells, kMaxPatchFunctions);
+  return patch_rows_ * cells * functions * functions;
+}
+
 std::vector<CellRole> PatchGrid::roles(std::size_t patch_row, std::size_t patch_column) const {
   const CellRect own = core(patch_row, patch_column);
   const CellRect all = window(patch_row, patch_column);
@@ -98,7 +104,8 @@ PatchBasis PatchGrid::make_basis(std::size_t patch_row, std::size_t patch_column
   std::vector<LocalDirection> cells;
   cells.reserve(all.cells());
   for (std::int64_t row = all.row_begin; row < all.row_end; ++row) {
-    const AngleParts elevation = AngleParts::of(lattice_.elevation(lattice_row(static_cast<double>(row))));
+    const AngleParts elevation =
+        AngleParts::of(lattice_.elevation(lattice_row(static_cast<double>(row))));
     for (std::int64_t column = all.column_begin; column < all.column_end; ++column) {
       const double azimuth = (static_cast<double>(column) - middle) * column_angle;
       cells.push_back(local_frame.local(elevation, AngleParts::of(azimuth / 2)));

@@ -55,6 +55,9 @@ class PatchGrid {
   LocalFrame frame(std::size_t patch_row) const { return LocalFrame(centre_elevation(patch_row)); }
   double centre_azimuth(std::size_t patch_column) const;
 
+  /// What making the basis of every row of patches may take: rows * cells * functions^2.
+  std::uint64_t basis_work() const;
+
   std::uint32_t dense_rows() const { return dense_rows_; }
   std::uint32_t dense_columns() const { return dense_columns_; }
 

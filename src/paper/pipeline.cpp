@@ -107,6 +107,17 @@ Status validate(const PaperSettings& s) {
   return check_number("the rejected error of the global expansion", s.global_reject_m, 0, 1e6);
 }
 
+Status check_patches(const PaperSettings& settings, const Lattice& lattice) {
+  constexpr std::uint64_t most = std::uint64_t{1} << 32;
+  const PatchGrid grid(lattice, settings.upsample_rows, settings.upsample_columns, settings.patch,
+                       settings.overlap);
+  if (grid.basis_work() <= most) return {};
+  return Error{ErrorCode::limit_exceeded,
+               fmt::format("{} rows of patches of {} cells each take too long; take fewer rows, "
+                           "less overlap or less upsampling",
+                           grid.rows(), grid.window(grid.rows() / 2, 0).cells())};
+}
+
 PaperStages run_stages(const Cloud& cloud, const Detection& detection,
                        const PaperSettings& settings, const StageOptions& options,
                        const ProgressCallback& progress) {

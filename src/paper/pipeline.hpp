@@ -20,6 +20,10 @@ namespace curlidar {
 /// Ranges of every setting that the pipeline and the decoder rely on.
 Status validate(const PaperSettings& settings);
 
+/// Whether patches of these sizes take a bearable time on a lattice: making their bases, which
+/// decoders must do, ten seconds at most. Limit_exceeded if not; the presets never are.
+Status check_patches(const PaperSettings& settings, const Lattice& lattice);
+
 /// Everything before the fit.
 struct PaperStages {
   RangeImage image;

@@ -6,7 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "codec/field_chunks.hpp"
 #include "curlidar/codec.hpp"
+#include "format/parameters_chunk.hpp"
+#include "format/sensor_chunk.hpp"
 #include "support/chunks.hpp"
 #include "support/clouds.hpp"
 #include "support/scans.hpp"
@@ -118,6 +121,28 @@ TEST(HostileDecode, DamagedCompactFilesDecodedInPart) {
       ASSERT_FALSE(scan.error().message.empty());
     }
   }
+}
+
+/// A few hundred bytes, in whose settings every row has patches of 44 x 44 samples of its own.
+TEST(HostileDecode, PatchesThatTakeForeverAreRefused) {
+  constexpr std::size_t rows = 1024, cells = rows * 64;
+  Parameters parameters;
+  parameters.paper.rows = rows;
+  parameters.paper.columns = 64;
+  parameters.paper.max_range = {100, 0};
+  parameters.paper.patch = 1;
+  parameters.paper.upsample_rows = parameters.paper.upsample_columns = 16;
+  parameters.paper.overlap = 14;
+  std::vector<PatchFit> patches(cells);
+  for (std::size_t i = 0; i < cells; i += 64) patches[i].coefficients.assign(256, 0.0);
+  ContainerWriter writer;
+  writer.add(ChunkType::sensor, *write_sensor(test::small_sensor()));
+  writer.add(ChunkType::parameters, write_parameters(parameters));
+  write_masks(CellMasks(rows, 64), writer);
+  writer.add(ChunkType::patches, write_patches(patches));
+  const Result<DecodedScan> scan = decode(std::move(writer).finish(), kLimits);
+  ASSERT_FALSE(scan);
+  EXPECT_EQ(scan.error().code, ErrorCode::limit_exceeded);
 }
 
 TEST(HostileDecode, ErrorsNameTheChunkAndTheByte) {

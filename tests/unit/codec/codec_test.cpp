@@ -246,6 +246,11 @@ TEST(Codec, RejectsWhatItCannotCode) {
   settings.paper.accept_m = kNan;
   EXPECT_FALSE(encode(scan, settings));
   settings = small_settings();
+  settings.paper.rows = 4096;
+  settings.paper.overlap = 14;
+  settings.paper.upsample_rows = settings.paper.upsample_columns = 4;
+  EXPECT_NE(encode(scan, settings).error().message.find("take too long"), std::string::npos);
+  settings = small_settings();
   settings.sensor->pattern = ScanPattern::limited_field;
   EXPECT_EQ(encode(scan, settings).error().code, ErrorCode::unsupported);
 }
