@@ -52,6 +52,12 @@ void CompactOptions::add(CLI::App& app) {
                                  "One segment: up to 2 % smaller, but parts of it cannot be "
                                  "decoded alone")
                         ->group(kGroup));
+  others_.push_back(app.add_option("--segments", segments_,
+                                   "Parts that can be decoded alone, bands of rings x sectors of "
+                                   "azimuth (1x4), or auto: as many as cost 2 % at most")
+                        ->type_name("RxC")
+                        ->capture_default_str()
+                        ->group(kGroup));
 }
 
 std::string CompactOptions::first_given() const {
@@ -80,6 +86,11 @@ void CompactOptions::apply(CompactSettings& settings) const {
   }
   settings.effort = effort_;
   settings.index = !no_index_;
+  if (segments_ == "auto") return;
+  if (no_index_) usage_error("--no-index makes one segment: leave --segments out");
+  const RowsByColumns<std::uint32_t> parts = parse_whole_factors(segments_, "--segments");
+  settings.bands = parts.rows;
+  settings.sectors = parts.columns;
 }
 
 Json breakdown_json(const CompactBreakdown& b) {

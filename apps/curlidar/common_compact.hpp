@@ -17,8 +17,8 @@ class CompactOptions {
  public:
   void add(CLI::App& app);
 
-  /// Writes target, effort and index to `settings`. Failure(kExitUsage) if two targets are given or
-  /// a value makes no sense.
+  /// Writes target, effort, index and segments to `settings`. Failure(kExitUsage) if two targets
+  /// are given or a value makes no sense.
   void apply(CompactSettings& settings) const;
   /// The first of these options that was given; "" if none was.
   std::string first_given() const;
@@ -35,6 +35,7 @@ class CompactOptions {
   std::vector<Target> targets_;
   std::uint32_t effort_ = CompactSettings{}.effort;
   bool no_index_ = false;
+  std::string segments_ = "auto";
   std::vector<CLI::Option*> others_;
 };
 

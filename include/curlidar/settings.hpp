@@ -39,8 +39,11 @@ struct CompactSettings {
   CompactTarget target = CompactTarget::error;
   double target_value = 0.05;  ///< what is reached is at most this, and near it
   std::uint32_t effort = 4;    ///< 1 (fast) .. 9 (smallest)
-  /// Segments that can be decoded alone and an index of them; costs 2 % at most.
+  /// Segments that can be decoded alone and an index of them.
   bool index = true;
+  /// Bands of rows and sectors of columns that make a segment each; 0 = as many as cost 2 % at most,
+  /// or one without an index. Roots of 16 x 16 cells start anew in every segment.
+  std::uint32_t bands = 0, sectors = 0;
 };
 /// Columns for clouds that bring none. At 2048 a return lies 0.05 degrees from its cell's middle on
 /// average, 15 mm at 20 m, well within the default error; HDL-64E scans keep 92 % of their returns.

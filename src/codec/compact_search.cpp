@@ -236,6 +236,8 @@ Result<CompactTrial> try_steps(const CompactJob& job, const compact::Steps& step
   settings.steps = steps;
   settings.effort = effort;
   settings.index = job.settings.index;
+  settings.bands = job.settings.bands;
+  settings.sectors = job.settings.sectors;
   settings.threads = job.threads;
   CURLIDAR_TRY_ASSIGN(encoded, encode_scan(job.model.image, job.model.table, settings));
   CompactTrial trial;

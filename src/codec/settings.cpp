@@ -67,6 +67,7 @@ Result<Profile> profile_by_name(std::string_view name) {
 }
 
 Status validate(const CompactSettings& s) {
+  constexpr std::uint32_t kMaxParts = 64;
   const auto invalid = [](std::string what) {
     return Error{ErrorCode::invalid_argument, std::move(what)};
   };
@@ -81,6 +82,9 @@ Status validate(const CompactSettings& s) {
     return invalid("the maximum range must be metres above 0 or a percentile in (0, 100]");
   }
   if (s.effort < 1 || s.effort > kMaxEffort) return invalid("the effort must be in 1..9");
+  if (s.bands > kMaxParts || s.sectors > kMaxParts) {
+    return invalid("a scan has at most 64 bands of rows and 64 sectors of columns");
+  }
   const bool metres = s.target != CompactTarget::bits_per_point;
   if (!(s.target_value > 0) || s.target_value > (metres ? 100 : 1000)) {
     return invalid(metres ? "the wanted error or step must be above 0 and at most 100 m"

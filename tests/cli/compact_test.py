@@ -58,6 +58,14 @@ class CompactTest(CommandTest):
         self.assertEqual(whole["segments"], 1)
         self.assertLessEqual(whole["bytes"], self.encode("--step", 0.05)["bytes"])
 
+    def test_segments_as_asked(self):
+        parts = self.encode("--step", 0.2, "--segments", "2x3")
+        self.assertEqual(parts["segments"], 6)
+        whole = self.run_json("decode", "x.curl", "-o", "whole.pcd")
+        part = self.run_json("decode", "x.curl", "-o", "part.pcd", "--azimuth", "0:60")
+        self.assertLess(0, part["points"])
+        self.assertLess(part["points"], whole["points"])
+
     def test_contradictions_are_refused(self):
         for arguments, says in [(["--error", 0.1, "--bits", 1], ["--error", "--bits"]),
                                 (["--step", 0.1, "--error-nn", 1], ["--step", "--error-nn"]),
@@ -66,7 +74,9 @@ class CompactTest(CommandTest):
                                 (["--rows", "uniform"], ["--profile paper"]),
                                 (["--profile", "paper", "--error", 0.1], ["--error", "compact"]),
                                 (["--error", 0], ["--error"]), (["--effort", 10], ["--effort"]),
-                                (["--error", "small"], ["--error"])]:
+                                (["--error", "small"], ["--error"]),
+                                (["--segments", "2x0"], ["--segments"]),
+                                (["--segments", "1x4", "--no-index"], ["--segments"])]:
             with self.subTest(arguments=arguments):
                 self.run_fail(USAGE, "encode", "grid.pcd", "-o", "no.curl", *arguments, says=says)
         self.assertFalse(self.path("no.curl").exists())
