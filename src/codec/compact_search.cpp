@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -272,22 +273,27 @@ Status choose_kind(CompactJob& job) {
       error_m < kBothKinds_m.front() || error_m > kBothKinds_m.back()) {
     return {};
   }
-  std::optional<double> least;
-  compact::FieldKind best = job.kind;
+  std::optional<CompactTrial> best;
+  compact::FieldKind best_kind = job.kind;
   for (const compact::FieldKind kind : {compact::FieldKind::close, compact::FieldKind::coarse}) {
     job.kind = kind;
     CURLIDAR_TRY_ASSIGN(trial, try_steps(job, usual_steps(job), compact::kDefaultEffort));
-    if (least && cost_of(trial) >= *least) continue;
-    least = cost_of(trial);
-    best = kind;
+    if (best && !is_cheaper(trial, *best)) continue;
+    best_kind = kind;
     job.start = start_after(trial, job.settings, compact::kDefaultEffort);
+    best = std::move(trial);
   }
-  job.kind = best;
+  job.kind = best_kind;
   return {};
 }
 
-double cost_of(const CompactTrial& trial) {
-  return std::log(trial.bits_per_point) + 0.75 * std::log(trial.errors.mean);
+bool is_cheaper(const CompactTrial& a, const CompactTrial& b) {
+  // Halving the error costs a bit a return where residuals carry the range, and a share of the
+  // bits where surfaces do.
+  const double bits = (a.bits_per_point + b.bits_per_point) / 2;
+  const double exponent = std::min(0.8, std::numbers::log2e / bits);
+  return std::log(a.bits_per_point / b.bits_per_point) <
+         exponent * std::log(b.errors.mean / a.errors.mean);
 }
 
 double start_after(const CompactTrial& quick, const CompactSettings& settings,

@@ -46,9 +46,9 @@ compact::Steps usual_steps(const CompactJob& job);
 /// Chooses the kind of field where both kinds may be best, by encoding with either.
 Status choose_kind(CompactJob& job);
 
-/// A logarithm to compare encodings of about one error by: a percent less error is worth 3/4 of a
-/// percent of bits.
-double cost_of(const CompactTrial& trial);
+/// Whether `a` needs fewer bits than `b` would at the same error: by what a little less error is
+/// usually worth at such a rate.
+bool is_cheaper(const CompactTrial& a, const CompactTrial& b);
 
 /// Where to begin, as CompactJob::start, after a quick encoding at the usual steps.
 double start_after(const CompactTrial& quick, const CompactSettings& settings,
