@@ -95,25 +95,29 @@ def read_chunks(data, cut=False):
         except Corrupt:
             if not cut:
                 raise
-            return chunks + _part(data[at:])
+            return chunks + _part(data[at:], seen)
         if checksum != crc32c(body):
             raise Corrupt(f"checksum of chunk 0x{kind:02x}")
-        if kind in ONCE and kind in seen:
-            raise Corrupt(f"chunk 0x{kind:02x} twice")
-        seen.add(kind)
+        check_kind(kind, seen)
         at += reader.at
         if kind == END:
             if payload or at != len(data):
                 raise Corrupt("the end is not the end")
             return chunks
-        if kind not in ONCE | REPEATED:
-            if kind < 0x80:
-                raise Unsupported(f"chunk 0x{kind:02x}")
-            continue
-        chunks.append(Chunk(kind, payload))
+        if kind in ONCE | REPEATED:
+            chunks.append(Chunk(kind, payload))
 
 
-def _part(data):
+def check_kind(kind, seen):
+    """Whether a chunk of a kind may follow those seen."""
+    if kind in ONCE and kind in seen:
+        raise Corrupt(f"chunk 0x{kind:02x} twice")
+    if kind not in ONCE | REPEATED and kind < 0x80:
+        raise Unsupported(f"chunk 0x{kind:02x}")
+    seen.add(kind)
+
+
+def _part(data, seen):
     """What is left of the payload of a chunk that is cut off."""
     reader = Reader(data)
     try:
@@ -121,6 +125,7 @@ def _part(data):
         size = reader.varint()
     except Corrupt:
         return []
+    check_kind(kind, seen)
     return [Chunk(kind, data[reader.at:reader.at + size], whole=False)]
 
 

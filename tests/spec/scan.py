@@ -105,6 +105,8 @@ class Scan:
         decoder = RangeDecoder(flag_bytes)
         flags = _leaf_flags(decoder, field)
         if decoder.exhausted:
+            if not chunk.whole:
+                return
             raise Corrupt("flags of residuals")
         coded = {}
         for (i, j), cell in field.known.items():
