@@ -71,8 +71,7 @@ void code_labels(Sink& sink, const FieldState& state, const Block& block, std::u
 /// Codes a block and what it holds; a reading sink fills `node`.
 template <class Sink>
 void code_node(Sink& sink, FieldState& state, Node& node) {
-  std::vector<std::uint32_t> cells;
-  state.cells_of(node.block, cells);
+  const std::vector<std::uint32_t> cells = state.cells_of(node.block);
   if (cells.empty()) return;
   const auto returns = static_cast<std::uint32_t>(cells.size());
   const BlockContext context = block_context(state, node.block, returns);

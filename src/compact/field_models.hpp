@@ -26,7 +26,7 @@ struct Contexts {
   FieldPart part = FieldPart::partition;
 };
 
-/// A run of models of one kind of decision: `sizes` contexts for each input.
+/// Where the models of each input of one kind of decision begin, and its first mixer.
 struct ModelRange {
   std::array<std::uint32_t, kFieldInputs> begin{};
   std::uint32_t mixer = 0;

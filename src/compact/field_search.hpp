@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "compact/field_code.hpp"
@@ -14,7 +13,6 @@ namespace curlidar::compact {
 /// Cost in 1/256 bit of either value in each model; what a search believes the bits will cost.
 class CostTable {
  public:
-  CostTable() = default;
   explicit CostTable(const std::vector<BitModel>& models);
 
   std::uint32_t cost(std::uint32_t model, bool value) const { return costs_[model][value]; }

@@ -102,14 +102,15 @@ Parents FieldState::parents(const Block& block) const {
   return out;
 }
 
-void FieldState::cells_of(const Block& block, std::vector<std::uint32_t>& cells) const {
-  cells.clear();
+std::vector<std::uint32_t> FieldState::cells_of(const Block& block) const {
+  std::vector<std::uint32_t> cells;
   for (std::uint32_t i = 0; i < block.height; ++i) {
     const auto begin = static_cast<std::uint32_t>(cell(block.row + i, block.column));
     for (std::uint32_t p = begin; p < begin + block.width; ++p) {
       if (occupied[p]) cells.push_back(p);
     }
   }
+  return cells;
 }
 
 }  // namespace curlidar::compact

@@ -66,12 +66,7 @@ class FieldState {
   const PatchShape& shape(const Block& block);
   Parents parents(const Block& block) const;
   /// Cells of the block that hold a return, in raster order.
-  void cells_of(const Block& block, std::vector<std::uint32_t>& cells) const;
-  std::vector<std::uint32_t> cells_of(const Block& block) const {
-    std::vector<std::uint32_t> cells;
-    cells_of(block, cells);
-    return cells;
-  }
+  std::vector<std::uint32_t> cells_of(const Block& block) const;
   /// Forgets everything coded.
   void clear();
   /// Forgets what was coded of a block, and all surfaces but the first `kept`.

@@ -47,14 +47,14 @@ BlockContext block_context(FieldState& state, const Block& block, std::uint32_t 
   neighbour(std::int64_t{block.row} - 1, block.column + block.width / 2, c.above_size,
             c.above_depth);
 
-  const Direction& middle =
+  c.middle =
       state.geometry
           .directions()[state.cell(block.row + block.height / 2, block.column + block.width / 2)];
   std::int64_t low = 0, high = 0;
   for (std::uint32_t k = 0; k < c.parents.count; ++k) {
     const PlacedSurface& parent = state.surfaces[static_cast<std::size_t>(c.parents.surface[k])];
     c.parent_functions[k] = parent.functions;
-    const std::int64_t range = range_of(parent.surface.plane.at(middle));
+    const std::int64_t range = range_of(parent.surface.plane.at(c.middle));
     low = k == 0 ? range : std::min(low, range);
     high = k == 0 ? range : std::max(high, range);
   }
@@ -62,26 +62,31 @@ BlockContext block_context(FieldState& state, const Block& block, std::uint32_t 
   return c;
 }
 
+std::int64_t range_step(const FieldState& state, const PatchFrame& frame) {
+  return std::max<std::int64_t>(mul_shift(state.settings.step, frame.shape.norm, 30), 1);
+}
+
+LayerBase base_of(const FieldState& state, const BlockContext& c, const PatchFrame& frame,
+                  const LayerCode& layer) {
+  LayerBase base;
+  std::int64_t range = 0;
+  if (layer.parent == 0) {
+    range = std::clamp(c.parents.range + layer.range_steps * range_step(state, frame), kMinRange,
+                       kMaxRange);
+    base.plane = facing_plane(frame, range);
+  } else {
+    const auto parent = static_cast<std::size_t>(c.parents.surface[layer.parent - 1]);
+    base.plane = state.surfaces[parent].surface.plane;
+    range = range_of(base.plane.at(c.middle));
+  }
+  base.step_q40 = coefficient_step((std::int64_t{1} << 46) / range, state.settings.step);
+  return base;
+}
+
 Surface surface_of(const FieldState& state, const BlockContext& c, const PatchFrame& frame,
                    const LayerCode& layer) {
-  if (layer.parent == 0) {
-    const std::int64_t step =
-        std::max<std::int64_t>(mul_shift(state.settings.step, frame.shape.norm, 30), 1);
-    const std::int64_t range =
-        std::clamp(c.parents.range + layer.range_steps * step, kMinRange, kMaxRange);
-    const Plane plane = facing_plane(frame, range);
-    return add_functions(plane, frame,
-                         coefficient_step((std::int64_t{1} << 46) / range, state.settings.step),
-                         layer.q, kFunctions[layer.functions]);
-  }
-  const Plane& plane =
-      state.surfaces[static_cast<std::size_t>(c.parents.surface[layer.parent - 1])].surface.plane;
-  const Direction& middle = state.geometry.directions()[state.cell(
-      c.block.row + c.block.height / 2, c.block.column + c.block.width / 2)];
-  const std::int64_t range = range_of(plane.at(middle));
-  return add_functions(plane, frame,
-                       coefficient_step((std::int64_t{1} << 46) / range, state.settings.step),
-                       layer.q, kFunctions[layer.functions]);
+  const LayerBase base = base_of(state, c, frame, layer);
+  return add_functions(base.plane, frame, base.step_q40, layer.q, kFunctions[layer.functions]);
 }
 
 LabelContexts::LabelContexts(const FieldState& state, const Block& block, std::uint32_t layers)

@@ -33,6 +33,7 @@ enum class Split : std::uint8_t { none, quad, rows, columns };
 /// What the contexts of a block are made of.
 struct BlockContext {
   Block block;
+  Direction middle;  ///< of the block's middle cell
   Parents parents;
   std::uint32_t size = 0;    ///< class of its cells, 0..5
   std::uint32_t shape = 0;   ///< class of shorter side and aspect, 0..11
@@ -254,7 +255,17 @@ void code_leaf(Sink& sink, const BlockContext& c, std::uint32_t returns, LeafCod
   }
 }
 
-/// The surface that a layer stands for. `middle` is the direction of the block's middle cell.
+/// What a layer's functions are added to, and their step in Q40.
+struct LayerBase {
+  Plane plane;
+  std::int64_t step_q40 = 0;
+};
+LayerBase base_of(const FieldState& state, const BlockContext& c, const PatchFrame& frame,
+                  const LayerCode& layer);
+/// The step of a new surface's range, Q16 metres.
+std::int64_t range_step(const FieldState& state, const PatchFrame& frame);
+
+/// The surface that a layer stands for.
 Surface surface_of(const FieldState& state, const BlockContext& c, const PatchFrame& frame,
                    const LayerCode& layer);
 

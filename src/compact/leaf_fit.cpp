@@ -112,36 +112,19 @@ LayerFit::Vector LayerFit::in_basis(const Plane& plane) const {
           0};
 }
 
-LayerFit::Start LayerFit::start_of(std::uint32_t parent, std::uint32_t functions) {
-  Start start;
-  start.layer.parent = parent;
-  start.layer.functions = functions;
-  std::int64_t range = 0;
-  const std::int32_t unit = state_.settings.step;
-  if (parent == 0) {
-    const std::int64_t step = std::max<std::int64_t>(mul_shift(unit, frame_.shape.norm, 30), 1);
-    const std::int64_t steps = div_round(median_range() - context_.parents.range, step);
-    start.layer.range_steps =
-        static_cast<std::int32_t>(std::clamp<std::int64_t>(steps, -(1 << 23), 1 << 23));
-    range =
-        std::clamp(context_.parents.range + start.layer.range_steps * step, kMinRange, kMaxRange);
-    start.plane = facing_plane(frame_, range);
-  } else {
-    start.plane = state_.surfaces[static_cast<std::size_t>(context_.parents.surface[parent - 1])]
-                      .surface.plane;
-    const Block& block = context_.block;
-    const Direction& middle = state_.geometry.directions()[state_.cell(
-        block.row + block.height / 2, block.column + block.width / 2)];
-    range = range_of(start.plane.at(middle));
-  }
-  start.step_q40 = coefficient_step((std::int64_t{1} << 46) / range, unit);
-  return start;
-}
-
 std::optional<LayerCode> LayerFit::fit(std::uint32_t parent, std::uint32_t functions) {
-  Start start = start_of(parent, functions);
+  LayerCode layer;
+  layer.parent = parent;
+  layer.functions = functions;
+  if (parent == 0) {
+    const std::int64_t steps =
+        div_round(median_range() - context_.parents.range, range_step(state_, frame_));
+    layer.range_steps =
+        static_cast<std::int32_t>(std::clamp<std::int64_t>(steps, -(1 << 23), 1 << 23));
+  }
   const std::uint32_t first = parent == 0 ? 1 : 0;
-  if (kFunctions[functions] <= first) return start.layer;
+  if (kFunctions[functions] <= first) return layer;
+  const LayerBase start = base_of(state_, context_, frame_, layer);
   const std::uint32_t n = kFunctions[functions] - first;
   const Vector base = in_basis(start.plane);
   Matrix gram{};
@@ -167,10 +150,10 @@ std::optional<LayerCode> LayerFit::fit(std::uint32_t parent, std::uint32_t funct
     const double steps = sum / gram[a][a] / step;
     if (!(std::fabs(steps) < kMaxQuantised)) return std::nullopt;
     const std::int32_t q = round_with_dead_zone(steps, a + first >= 3 ? 0.38 : 0.42);
-    start.layer.q[a + first] = q;
+    layer.q[a + first] = q;
     c[a] = q * step;
   }
-  return start.layer;
+  return layer;
 }
 
 }  // namespace curlidar::compact

@@ -45,12 +45,6 @@ class LayerFit {
  private:
   using Vector = std::array<double, kMaxFunctions>;
   using Matrix = std::array<Vector, kMaxFunctions>;
-  struct Start {
-    Plane plane;
-    std::int64_t step_q40 = 0;
-    LayerCode layer;
-  };
-  Start start_of(std::uint32_t parent, std::uint32_t functions);
   std::int64_t median_range();
   Vector in_basis(const Plane& plane) const;
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <bit>
 #include <limits>
 #include <optional>
@@ -96,7 +97,7 @@ class LeafSearch {
   void try_one_layer();
   void try_two_layers();
   void try_another_layer(std::uint32_t layers);
-  bool refine(std::uint32_t layers, std::vector<std::uint8_t> labels);
+  void refine(std::uint32_t layers, std::vector<std::uint8_t> labels);
   std::optional<FittedLayer> best_layer(const Members& members, std::uint32_t layers,
                                         std::uint32_t index, std::uint32_t used) const;
 
@@ -169,8 +170,8 @@ std::int64_t LeafSearch::cost_of_one(const LayerCode& layer) {
   const Surface surface = surface_of(state_, context_, frame_, layer);
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (plain >= best_ && refined >= best_) return best_;
-    const std::int64_t e = error(
-        i, static_cast<std::int32_t>(surface.range_at(frame_, samples_.directions[i])));
+    const std::int64_t e =
+        error(i, static_cast<std::int32_t>(surface.range_at(frame_, samples_.directions[i])));
     plain += error_cost(e, false);
     if (has_residual) refined += error_cost(e, true);
   }
@@ -248,7 +249,7 @@ std::optional<FittedLayer> LeafSearch::best_layer(const Members& members, std::u
 }
 
 /// Fits `layers` layers to the samples so labelled, relabels, and again; considers each.
-bool LeafSearch::refine(std::uint32_t layers, std::vector<std::uint8_t> labels) {
+void LeafSearch::refine(std::uint32_t layers, std::vector<std::uint8_t> labels) {
   for (std::uint32_t pass = 0; pass < settings_.layer_passes; ++pass) {
     LeafCode leaf;
     leaf.layers = layers;
@@ -259,9 +260,9 @@ bool LeafSearch::refine(std::uint32_t layers, std::vector<std::uint8_t> labels) 
       for (std::uint32_t i = 0; i < labels.size(); ++i) {
         if (labels[i] == k) members.push_back(i);
       }
-      if (members.empty()) return false;
+      if (members.empty()) return;
       auto layer = best_layer(members, layers, k, used);
-      if (!layer) return false;
+      if (!layer) return;
       leaf.layer[k] = layer->code;
       if (layer->code.parent > 0) used |= 1u << (layer->code.parent - 1);
       fitted.push_back(std::move(*layer));
@@ -280,7 +281,6 @@ bool LeafSearch::refine(std::uint32_t layers, std::vector<std::uint8_t> labels) 
     }
     if (!changed) break;
   }
-  return true;
 }
 
 /// Where sorted values fall apart best: at the widest gap, and where the variance between the two

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
 
 #include <fmt/format.h>
@@ -110,6 +111,13 @@ std::string format_weights(std::span<const std::int32_t> weights, const std::str
         static_cast<std::uint16_t>(static_cast<std::int16_t>(std::clamp(weight, -32767, 32767))));
   }
   return format_words(words, comment);
+}
+
+bool write_text(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  return static_cast<bool>(file);
 }
 
 }  // namespace curlidar::training

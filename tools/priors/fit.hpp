@@ -66,5 +66,7 @@ void apply_states(std::span<const FirstState> states, std::span<BitModel> models
 /// Texts for apply_priors() and apply_weight_priors(); `weights` in 1/4096.
 std::string format_states(std::span<const FirstState> states, const std::string& comment);
 std::string format_weights(std::span<const std::int32_t> weights, const std::string& comment);
+/// False if the file cannot be written.
+bool write_text(const std::string& path, const std::string& text);
 
 }  // namespace curlidar::training

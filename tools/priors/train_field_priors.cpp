@@ -14,6 +14,7 @@
 
 #include "base/parallel.hpp"
 #include "compact/field_encoder.hpp"
+#include "compact/scan_effort.hpp"
 #include "curlidar/io.hpp"
 #include "priors/train.hpp"
 
@@ -92,19 +93,15 @@ bool read_grid(const std::string& path, Grid& grid) {
   return true;
 }
 
-SearchSettings search_for(std::int32_t step) {
-  SearchSettings search;
-  search.lambda = std::max(step * 17 / 100, 1);
-  search.binary_below = 16;
-  return search;
-}
+/// A thorough search that still takes seconds.
+constexpr std::uint32_t kEffort = 7;
 
 /// Takes each ring's offset, the median of what a coarse field leaves, off its ranges.
 void remove_ring_offsets(Grid& grid) {
   const FieldSettings settings{kRangeUnit * 3 / 10, 4, 8};
   for (int round = 0; round < 2; ++round) {
     FieldState state(*grid.geometry, grid.occupied, settings);
-    encode_field(state, grid.ranges, search_for(settings.step));
+    encode_field(state, grid.ranges, search_settings(kEffort, settings.step, 0).search);
     const std::size_t columns = grid.geometry->columns();
     for (std::size_t row = 0; row < grid.geometry->rows(); ++row) {
       std::vector<std::int32_t> left;
@@ -128,23 +125,10 @@ constexpr int kResidualBelow_mm = 50;
 
 FieldScan search_scan(const Grid& grid, const std::string& name, int step_mm) {
   FieldScan scan{name, &grid, {kRangeUnit * step_mm / 1000, 4, 8}, {}};
-  SearchSettings search = search_for(scan.settings.step);
-  if (step_mm < kResidualBelow_mm) {
-    search.residual_step = scan.settings.step;
-    for (std::int64_t i = 0; i < 8 * 256; ++i) {
-      const std::int64_t error = (2 * i + 1) * search.residual_step / 16;
-      std::int64_t least = std::numeric_limits<std::int64_t>::max();
-      for (std::int64_t q = 0; q < 260; ++q) {
-        const double bits = q == 0 ? 1.6 : 2.2 + 2 * std::floor(std::log2(q));
-        least = std::min(least, 256 * std::abs(error - q * search.residual_step) +
-                                    static_cast<std::int64_t>(std::llround(
-                                        256 * bits * static_cast<double>(search.lambda))));
-      }
-      search.residual_costs.push_back(least);
-    }
-  }
+  const std::int32_t residual_step = step_mm < kResidualBelow_mm ? scan.settings.step : 0;
+  const Effort effort = search_settings(kEffort, scan.settings.step, residual_step);
   FieldState state(*grid.geometry, grid.occupied, scan.settings);
-  scan.roots = encode_field(state, grid.ranges, search).roots;
+  scan.roots = encode_field(state, grid.ranges, effort.search).roots;
   return scan;
 }
 
@@ -165,12 +149,6 @@ void report(const Trainer& trainer, const std::vector<training::Example<FieldSca
     }
   }
   fmt::print("mean ratio {:.4f}\n", trained_sum / blank_sum);
-}
-
-bool write_text(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  return static_cast<bool>(file);
 }
 
 }  // namespace
@@ -211,13 +189,13 @@ int main(int argc, char** argv) {
   for (const std::int32_t weight : priors.weights) weights.push_back(weight / 16);
   const std::string folder = argv[2];
   const bool written =
-      write_text(
+      training::write_text(
           folder + "/field.txt",
           training::format_states(
               priors.states,
               "# First states of the field's models, kind by kind: see the specification.\n")) &&
-      write_text(folder + "/field_mix.txt",
-                 training::format_weights(
-                     weights, "# First weights of the field's mixes, four to a mix.\n"));
+      training::write_text(folder + "/field_mix.txt",
+                           training::format_weights(
+                               weights, "# First weights of the field's mixes, four to a mix.\n"));
   return written ? 0 : 1;
 }

@@ -98,12 +98,6 @@ void report(const training::Trainer<MaskRoom>& trainer, const Examples& scans,
   }
 }
 
-bool write(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  return file.good();
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -132,10 +126,12 @@ int main(int argc, char** argv) {
   for (std::int32_t& weight : priors.weights) weight = (weight + 8) >> 4;
   const std::string folder = std::string(argv[2]) + "/";
   const bool written =
-      write(folder + "mask.txt",
-            training::format_states(priors.states, "# States of the mask's models: 8 x 1024.\n")) &&
-      write(folder + "mask_mix.txt",
-            training::format_weights(priors.weights, "# Weights of the mask's mix: 128 x 48.\n"));
+      training::write_text(
+          folder + "mask.txt",
+          training::format_states(priors.states, "# States of the mask's models: 8 x 1024.\n")) &&
+      training::write_text(
+          folder + "mask_mix.txt",
+          training::format_weights(priors.weights, "# Weights of the mask's mix: 128 x 48.\n"));
   if (!written) std::cerr << folder << ": cannot write\n";
   return written ? 0 : 1;
 }
