@@ -58,6 +58,8 @@ const char* to_string(ScanPart part) {
       return "compact_field";
     case ScanPart::residual:
       return "compact_residual";
+    case ScanPart::rays:
+      return "compact_rays";
   }
   return "unknown";
 }

@@ -5,11 +5,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/bytes.hpp"
 #include "compact/geometry.hpp"
+#include "compact/ray_table.hpp"
 
 namespace curlidar::compact {
 
@@ -44,6 +46,10 @@ struct RowTable {
   std::vector<std::int32_t> range_offset;
 
   std::uint32_t elevation_shift = 0, height_shift = 0, offset_shift = 0;
+
+  /// The sensor's own rays, if cells are those: then `height` is empty, turn_columns the number of
+  /// firings, and elevations are those of the rays and in any order.
+  std::optional<RayTable> rays;
 
   friend bool operator==(const RowTable&, const RowTable&) = default;
 };
@@ -94,6 +100,7 @@ enum class ScanPart : std::uint8_t {
   mask = 0x13,      ///< one for each segment, in the order of the segments
   field = 0x14,     ///< likewise
   residual = 0x15,  ///< likewise, if there is a residual layer
+  rays = 0x16,      ///< if cells are the sensor's own rays
 };
 /// "compact_parameters", ... as the container names them.
 const char* to_string(ScanPart part);

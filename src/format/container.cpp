@@ -57,6 +57,18 @@ const char* name_of(ChunkType type) {
       return "compact_field";
     case ChunkType::compact_residual:
       return "compact_residual";
+    case ChunkType::compact_rays:
+      return "compact_rays";
+    case ChunkType::directions:
+      return "directions";
+    case ChunkType::loose:
+      return "loose";
+    case ChunkType::corrections:
+      return "corrections";
+    case ChunkType::order:
+      return "order";
+    case ChunkType::records:
+      return "records";
     case ChunkType::metadata:
       return "metadata";
   }

@@ -38,6 +38,12 @@ enum class ChunkType : std::uint8_t {
   compact_mask = 0x13,      ///< one for each segment, in the order of the segments
   compact_field = 0x14,     ///< likewise
   compact_residual = 0x15,  ///< likewise
+  compact_rays = 0x16,
+  directions = 0x20,   ///< where returns lie beside the middles of their cells
+  loose = 0x21,        ///< points that are in no cell
+  corrections = 0x22,  ///< what brings points within a bound, or back bit for bit
+  order = 0x23,        ///< the slots of the cloud: their order, shape and kind
+  records = 0x24,      ///< attributes of every slot
   metadata = 0x80,
 };
 
