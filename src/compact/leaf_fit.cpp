@@ -11,13 +11,26 @@ constexpr double kQ20 = 1.0 / (1 << 20);
 constexpr double kQ30 = 1.0 / (1 << 30);
 constexpr double kQ40 = kQ20 * kQ20;
 
-/// B0..B5 at a direction, as add_functions scales them.
-std::array<double, kMaxFunctions> basis_at(const PatchFrame& frame, const Direction& d) {
+/// What a plane is linear in: it meets o + r d where n . (d + o / r) = 1 / r.
+Direction apparent(const Sight& sight, std::int64_t range) {
+  constexpr std::int64_t kMost = 1 << 24;
+  const auto q22 = [&](std::int32_t along, std::int32_t beside) {
+    return along + static_cast<std::int32_t>(
+                       std::clamp((std::int64_t{beside} << 22) / range, -kMost, kMost));
+  };
+  const auto& [d, o] = sight;
+  return {q22(d.x, o.x), q22(d.y, o.y), q22(d.z, o.z)};
+}
+
+/// B0..B2 at a direction as seen from the field's centre, B3..B5 at that of the cell, as
+/// add_functions scales them.
+std::array<double, kMaxFunctions> basis_at(const PatchFrame& frame, const Direction& d,
+                                           const Direction& of_cell) {
   const auto dot = [&](const Axis& a) {
     return static_cast<double>((a.x * d.x + a.y * d.y + a.z * d.z) >> 22) * kQ30;
   };
   const double norm = static_cast<double>(frame.shape.norm) * kQ30;
-  const std::array<std::int64_t, 3> curved = frame.quadratic(d);
+  const std::array<std::int64_t, 3> curved = frame.quadratic(of_cell);
   return {dot(frame.c) * norm,
           dot(frame.u) * norm * static_cast<double>(frame.shape.scale_u) / 16384,
           dot(frame.v) * norm * static_cast<double>(frame.shape.scale_v) / 16384,
@@ -51,12 +64,13 @@ LeafSamples::LeafSamples(const FieldState& state, const PatchFrame& frame,
                          std::vector<std::uint32_t> of_cells)
     : cells(std::move(of_cells)) {
   for (const std::uint32_t cell : cells) {
-    directions.push_back(state.geometry.directions()[cell]);
+    sights.push_back(state.geometry.sight(cell));
     ranges.push_back(truth[cell]);
     const double metres = static_cast<double>(truth[cell]) / kRangeUnit;
     inverse.push_back(1.0 / metres);
     weights.push_back(metres * metres * (metres * metres));
-    basis.push_back(basis_at(frame, directions.back()));
+    const Sight& sight = sights.back();
+    basis.push_back(basis_at(frame, apparent(sight, truth[cell]), sight.direction));
   }
 }
 

@@ -15,7 +15,7 @@ namespace curlidar::compact {
 /// Returns, those of a block for one, with what every fit needs of them.
 struct LeafSamples {
   std::vector<std::uint32_t> cells;
-  std::vector<Direction> directions;
+  std::vector<Sight> sights;
   std::vector<std::int64_t> ranges;                      ///< Q16
   std::vector<double> inverse;                           ///< 1 / r in 1/m
   std::vector<double> weights;                           ///< r^4 in metres

@@ -19,8 +19,10 @@ MaskShape mask_shape(const RowTable& table, const SegmentPlace& place) {
   return {place.rows, place.columns, table.turn_columns};
 }
 
+/// What is added to the field's range to have the coded one.
 std::int32_t offset_of(const RowTable& table, std::uint32_t row) {
-  return table.range_offset.empty() ? 0 : table.range_offset[row];
+  const std::int32_t offset = table.range_offset.empty() ? 0 : table.range_offset[row];
+  return table.rays ? offset - table.rays->rays[row].range_phase : offset;
 }
 
 std::int32_t clamp_range(std::int64_t range) {

@@ -40,6 +40,10 @@ std::vector<SegmentPlace> segments_of(const ScanParameters& p) {
 
 Geometry geometry_of(const RowTable& table, const SegmentPlace& place) {
   const auto first = table.elevation.begin() + place.row;
+  if (table.rays) {
+    return Geometry({first, first + place.rows}, *table.rays, place.row, place.column,
+                    place.columns);
+  }
   return Geometry({first, first + place.rows}, table.turn_columns,
                   table.first_column + place.column, place.columns);
 }

@@ -6,6 +6,7 @@
 // exactly n . d. All integers; docs/format says the same to the bit.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -53,17 +54,21 @@ struct Plane {
 
   /// n . d in Q30.
   std::int64_t at(const Direction& d) const { return (x * d.x + y * d.y + z * d.z) >> 22; }
+  /// n . o in Q30, for |n| up to 2^38 and |o| up to 2^22 an axis.
+  std::int64_t beside(const Origin& o) const { return (x * o.x + y * o.y + z * o.z) >> 16; }
 };
 
 /// The plane square to the patch's middle at a range.
 Plane facing_plane(const PatchFrame& frame, std::int64_t range);
 
-/// The range of an inverse range in Q30, within [kMinRange, kMaxRange].
-inline std::int64_t range_of(std::int64_t inverse) {
+/// The range `share` (Q30; taken within [1/4, 4]) of 1 / inverse (Q30), within [kMinRange,
+/// kMaxRange].
+inline std::int64_t range_of(std::int64_t inverse, std::int64_t share = std::int64_t{1} << 30) {
   constexpr std::int64_t low = (std::int64_t{1} << 46) / kMaxRange;
   constexpr std::int64_t high = (std::int64_t{1} << 46) / kMinRange;
-  inverse = inverse < low ? low : inverse > high ? high : inverse;
-  return (std::int64_t{1} << 46) / inverse;
+  inverse = std::clamp(inverse, low, high);
+  share = std::clamp(share, std::int64_t{1} << 28, std::int64_t{1} << 32);
+  return std::clamp((share << 16) / inverse, kMinRange, kMaxRange);
 }
 
 struct Surface {
@@ -82,6 +87,11 @@ struct Surface {
   /// Range in a direction, Q16 metres.
   std::int64_t range_at(const PatchFrame& frame, const Direction& d) const {
     return range_of(inverse_at(frame, d));
+  }
+  /// Range along a line of sight. A plane n . p = 1 meets o + r d at r = (1 - n . o) / (n . d).
+  std::int64_t range_at(const PatchFrame& frame, const Sight& sight) const {
+    constexpr std::int64_t one = std::int64_t{1} << 30;
+    return range_of(inverse_at(frame, sight.direction), one - plane.beside(sight.origin));
   }
 };
 
