@@ -14,6 +14,7 @@
 namespace curlidar {
 
 inline constexpr std::size_t kMaxRings = 1024;
+inline constexpr std::uint32_t kMaxSlots = 1u << 22;
 
 /// One laser (channel) of a spinning LiDAR. Angles in radians.
 struct Ring {
@@ -21,6 +22,7 @@ struct Ring {
   double azimuth_offset = 0;       ///< of the beam against the encoder angle, counter-clockwise
   double vertical_offset_m = 0;    ///< height where the beam's line meets the spin axis
   double horizontal_offset_m = 0;  ///< displacement of the beam's origin to the left
+  double range_phase_m = 0;        ///< added to a multiple of the range unit, along the beam
 };
 
 /// Whether the profile describes a 360 degree spinning sensor.
@@ -38,6 +40,10 @@ struct SensorProfile {
   double min_range_m = 0;
   double max_range_m = 120;
   double beam_origin_radius_m = 0;  ///< Ouster's lidar_origin_to_beam_origin
+  /// Encoder positions of a turn, at angles -pi + 2 pi n / slots; 0: not known. With it the offsets
+  /// of the rings are taken as exact, and points are placed on the sensor's own lattice.
+  std::uint32_t slots = 0;
+  double range_unit_m = 0;  ///< ranges are multiples of it; 0: not known
 
   /// Elevations of the rings, top to bottom, radians.
   std::vector<double> elevations() const;
@@ -49,7 +55,8 @@ struct SensorProfile {
 
 /// Checks what every consumer relies on: 1..kMaxRings rings strictly descending in elevation,
 /// finite angles inside +-90 degrees, beam origins within 10 m, 4..65536 columns, fov_up > fov_down
-/// (equal allowed for one ring), 0 <= min_range < max_range.
+/// (equal allowed for one ring), 0 <= min_range < max_range, at most kMaxSlots slots, a range unit
+/// and phases below 10 m.
 Status validate(const SensorProfile& profile);
 
 /// Names of the built-in profiles, sorted.

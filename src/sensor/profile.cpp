@@ -30,6 +30,9 @@ Status validate_ring(const SensorProfile& profile, std::size_t i) {
       !finite_and_inside(ring.horizontal_offset_m, 10)) {
     return invalid("offsets of the beam's origin must lie within +-10 m");
   }
+  if (!finite_and_inside(ring.range_phase_m, 10)) {
+    return invalid("the range phase must lie within +-10 m");
+  }
   if (i > 0 && !(ring.elevation < profile.rings[i - 1].elevation)) {
     return invalid("elevations must descend strictly from the top ring to the bottom one");
   }
@@ -84,6 +87,13 @@ Status validate(const SensorProfile& profile) {
   }
   if (!finite_and_inside(profile.beam_origin_radius_m, 10)) {
     return invalid("the radius of the beam origins must lie within +-10 m");
+  }
+  if (profile.slots > kMaxSlots) {
+    return invalid(fmt::format("at most {} encoder positions (slots) make a turn, not {}",
+                               kMaxSlots, profile.slots));
+  }
+  if (!finite_and_inside(profile.range_unit_m, 10) || profile.range_unit_m < 0) {
+    return invalid("the range unit must lie within 0 .. 10 m");
   }
   return {};
 }

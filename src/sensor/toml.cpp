@@ -30,11 +30,12 @@ struct RingField {
   const char *key, *radian_key;  ///< radian_key is null for lengths
 };
 
-constexpr std::array<RingField, 4> kRingFields{
+constexpr std::array<RingField, 5> kRingFields{
     {{&Ring::elevation, "elevation_deg", "elevation_rad"},
      {&Ring::azimuth_offset, "azimuth_offset_deg", "azimuth_offset_rad"},
      {&Ring::vertical_offset_m, "vertical_offset_m", nullptr},
-     {&Ring::horizontal_offset_m, "horizontal_offset_m", nullptr}}};
+     {&Ring::horizontal_offset_m, "horizontal_offset_m", nullptr},
+     {&Ring::range_phase_m, "range_phase_m", nullptr}}};
 
 Error error_at(const std::string& where, const toml::source_region& source, std::string_view what,
                ErrorCode code = ErrorCode::invalid_argument) {
@@ -194,6 +195,8 @@ Result<SensorProfile> read_profile(const toml::table& root, const std::string& w
   profile.min_range_m = reader.number("min_range_m").value_or(profile.min_range_m);
   profile.max_range_m = reader.number("max_range_m").value_or(profile.max_range_m);
   profile.beam_origin_radius_m = reader.number("beam_origin_radius_m").value_or(0);
+  profile.slots = reader.count("slots", kMaxSlots).value_or(0);
+  profile.range_unit_m = reader.number("range_unit_m").value_or(0);
   const toml::node* rings = reader.take("rings");
   CURLIDAR_TRY(reader.finish());
   if (rings == nullptr || !rings->is_table()) {
@@ -290,6 +293,8 @@ std::string sensor_to_toml(const SensorProfile& profile) {
   if (profile.beam_origin_radius_m != 0) {
     out += fmt::format("beam_origin_radius_m = {}\n", profile.beam_origin_radius_m);
   }
+  if (profile.slots != 0) out += fmt::format("slots = {}\n", profile.slots);
+  if (profile.range_unit_m != 0) out += fmt::format("range_unit_m = {}\n", profile.range_unit_m);
   out += "\n[rings]\n";
   for (const RingField& field : kRingFields) {
     const bool needed = field.member == &Ring::elevation ||

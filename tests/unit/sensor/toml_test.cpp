@@ -25,12 +25,15 @@ void expect_same(const SensorProfile& a, const SensorProfile& b) {
   EXPECT_EQ(a.min_range_m, b.min_range_m);
   EXPECT_EQ(a.max_range_m, b.max_range_m);
   EXPECT_EQ(a.beam_origin_radius_m, b.beam_origin_radius_m);
+  EXPECT_EQ(a.slots, b.slots);
+  EXPECT_EQ(a.range_unit_m, b.range_unit_m);
   ASSERT_EQ(a.rings.size(), b.rings.size());
   for (std::size_t i = 0; i < a.rings.size(); ++i) {
     EXPECT_EQ(a.rings[i].elevation, b.rings[i].elevation) << a.name << " ring " << i;
     EXPECT_EQ(a.rings[i].azimuth_offset, b.rings[i].azimuth_offset);
     EXPECT_EQ(a.rings[i].vertical_offset_m, b.rings[i].vertical_offset_m);
     EXPECT_EQ(a.rings[i].horizontal_offset_m, b.rings[i].horizontal_offset_m);
+    EXPECT_EQ(a.rings[i].range_phase_m, b.rings[i].range_phase_m);
   }
 }
 
@@ -54,6 +57,35 @@ azimuth_offset_deg = [1, 0, -1]
   // Without a stated field of view the outermost rings bound it.
   EXPECT_EQ(sensor->fov_up, sensor->rings.front().elevation);
   EXPECT_EQ(sensor->fov_down, sensor->rings.back().elevation);
+}
+
+TEST(SensorToml, KeepsTheSensorsOwnLattice) {
+  const auto sensor = parse_sensor_toml(R"(
+slots = 36000
+range_unit_m = 0.002
+[rings]
+elevation_deg = [1, -1]
+range_phase_m = [0.0004, -0.0007]
+)",
+                                        "mine.toml");
+  ASSERT_TRUE(sensor) << sensor.error().message;
+  EXPECT_EQ(sensor->slots, 36000u);
+  EXPECT_EQ(sensor->range_unit_m, 0.002);
+  EXPECT_EQ(sensor->rings[1].range_phase_m, -0.0007);
+  const auto again = parse_sensor_toml(sensor_to_toml(*sensor), "again.toml");
+  ASSERT_TRUE(again) << again.error().message;
+  expect_same(*sensor, *again);
+}
+
+TEST(SensorToml, RefusesImpossibleLattices) {
+  const auto read = [](const std::string& line) {
+    return parse_sensor_toml(line + "\n[rings]\nelevation_deg = [1, -1]\n", "mine.toml");
+  };
+  for (const char* line : {"slots = 0", "slots = 5000000", "slots = 1.5", "range_unit_m = -0.1",
+                           "range_unit_m = 11", "range_unit_m = nan"}) {
+    EXPECT_FALSE(read(line)) << line;
+  }
+  EXPECT_TRUE(read("slots = 4000"));
 }
 
 TEST(SensorToml, SpreadsUniformRings) {
