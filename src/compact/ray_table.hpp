@@ -24,8 +24,8 @@ struct Ray {
   friend bool operator==(const Ray&, const Ray&) = default;
 };
 
-/// What the vehicle's motion did to the points of a scan. A point at azimuth z (binary angle, signed;
-/// s = z / 2^32 of a turn) of the sensor's own frame was moved to
+/// What the vehicle's motion did to the points of a scan. A point at azimuth z (binary angle,
+/// signed; s = z / 2^32 of a turn) of the sensor's own frame was moved to
 ///   R(rigid_turn) (R(s turn + s^2 turn2) p + s move + s^2 move2) + rigid_move,
 /// with R(w) the rotation by |w| about w. All zero: not compensated.
 struct Motion {
@@ -42,11 +42,18 @@ struct Motion {
 /// side in space although lasers look to different azimuths at one firing.
 struct RayTable {
   std::uint32_t slots = 0;  ///< encoder positions of a turn
-  /// Positions at which lasers fired, strictly ascending, below `slots`. Position n is encoder angle
-  /// 2^31 + floor(n 2^32 / slots), counter-clockwise.
+  /// Positions at which lasers fired, strictly ascending, below `slots`. Position n is encoder
+  /// angle 2^31 + floor(n 2^32 / slots), counter-clockwise.
   std::vector<std::uint32_t> firings;
   std::vector<Ray> rays;  ///< of each row
   Motion motion;
+
+  /// Which frozen table (ray_tables.hpp) elevations and rays are, 0 = none: then they are written
+  /// out in units of 2^(the shifts).
+  std::uint32_t table = 0;
+  std::uint32_t azimuth_shift = 0, height_shift = 0, lateral_shift = 0, phase_shift = 0;
+  /// The numbers of the motion are multiples of 2^(these): turns and moves.
+  std::uint32_t turn_shift = 0, move_shift = 0;
 
   /// round(azimuth_offset * firings / 2^32), halves upwards, in (-firings, firings).
   std::int32_t column_shift(std::size_t row) const {

@@ -28,6 +28,10 @@ Vec3 to_metres(const FixedPoint& point) {
 
 PointTable::PointTable(const RowTable& table, std::uint32_t rows, std::uint32_t columns)
     : table_(table) {
+  if (table.rays) {
+    rays_.emplace(table, rows);
+    return;
+  }
   if (table.height.empty()) {
     elevations_.reserve(rows);
     for (std::uint32_t row = 0; row < rows; ++row) {
@@ -42,6 +46,7 @@ PointTable::PointTable(const RowTable& table, std::uint32_t rows, std::uint32_t 
 }
 
 FixedPoint PointTable::fixed(std::uint32_t row, std::uint32_t column, std::int32_t range) const {
+  if (rays_) return rays_->fixed(row, column, range);
   const SinCos elevation =
       elevations_.empty() ? sin_cos_q30(elevation_at(table_, row, range)) : elevations_[row];
   return point_at(range, elevation, azimuths_[column]);

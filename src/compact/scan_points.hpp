@@ -3,7 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <vector>
 
+#include "compact/fixed_point.hpp"
+#include "compact/ray_points.hpp"
 #include "compact/scan_types.hpp"
 #include "curlidar/vec3.hpp"
 
@@ -13,11 +17,6 @@ namespace curlidar::compact {
 /// elevation + floor(height * 683565276 / range), 683565276 = round(2^32 / 2 pi).
 std::uint32_t elevation_at(const RowTable& table, std::uint32_t row, std::int32_t range);
 
-/// A point in Q36 metres.
-struct FixedPoint {
-  std::int64_t x = 0, y = 0, z = 0;
-};
-
 /// The point at `range` (1 .. 2^30, Q16 metres) of a direction given by its sines and cosines:
 /// x = round(range * round(cos e cos a / 2^30) / 2^10), y with sin a, z = round(range * sin e /
 /// 2^10); halves upwards. |coordinate| <= 2^50.
@@ -26,7 +25,8 @@ FixedPoint point_at(std::int32_t range, const SinCos& elevation, const SinCos& a
 /// Exactly, in metres.
 Vec3 to_metres(const FixedPoint& point);
 
-/// The points of an image's cells: azimuths and, where no row has a height, elevations once.
+/// The points of an image's cells, along rays where the table has some; otherwise azimuths and,
+/// where no row has a height, elevations are looked up. The table outlives this.
 class PointTable {
  public:
   PointTable(const RowTable& table, std::uint32_t rows, std::uint32_t columns);
@@ -38,6 +38,7 @@ class PointTable {
 
  private:
   const RowTable& table_;
+  std::optional<RayPoints> rays_;
   std::vector<SinCos> elevations_, azimuths_;
 };
 
