@@ -57,7 +57,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 std::string nearest_names(const std::string& wanted) {
   std::vector<std::pair<std::size_t, std::string_view>> ranked;
-  for (const EmbeddedProfile& profile : embedded_profiles()) {
+  for (const EmbeddedText& profile : embedded_profiles()) {
     ranked.emplace_back(edit_distance(wanted, squeeze(profile.name)), profile.name);
   }
   std::sort(ranked.begin(), ranked.end());
@@ -72,7 +72,7 @@ std::string nearest_names(const std::string& wanted) {
 
 std::vector<std::string> builtin_sensor_names() {
   std::vector<std::string> out;
-  for (const EmbeddedProfile& profile : embedded_profiles()) out.emplace_back(profile.name);
+  for (const EmbeddedText& profile : embedded_profiles()) out.emplace_back(profile.name);
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -84,9 +84,9 @@ Result<SensorProfile> builtin_sensor(std::string_view name) {
   for (const auto& [alias, target] : kAliases) {
     if (wanted == alias) known = target;
   }
-  for (const EmbeddedProfile& profile : embedded_profiles()) {
+  for (const EmbeddedText& profile : embedded_profiles()) {
     if (squeeze(profile.name) != squeeze(known)) continue;
-    return parse_sensor_toml(profile.toml, fmt::format("built-in sensor {}", profile.name));
+    return parse_sensor_toml(profile.text, fmt::format("built-in sensor {}", profile.name));
   }
   for (const std::string_view word : kLimitedField) {
     if (!wanted.starts_with(word)) continue;
