@@ -19,7 +19,7 @@ Vec3 rotate(const Vec3& w, const Vec3& p) {
   // small.
   const double square = dot(w, w);
   double a, b;
-  if (square < 1e-4) {
+  if (square < .01) {
     a = 1 - square * (1.0 / 6 - square * (1.0 / 120 - square / 5040));
     b = 0.5 - square * (1.0 / 24 - square * (1.0 / 720 - square / 40320));
   } else {

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sensor/motion_search.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <optional>
+
+#include "sensor/returns.hpp"
+
+namespace curlidar {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+// Places of the parts of a motion in the vector of unknowns.
+constexpr std::array<Vec3 MotionTwist::*, 6> kParts{
+    &MotionTwist::turn,  &MotionTwist::move,       &MotionTwist::turn2,
+    &MotionTwist::move2, &MotionTwist::rigid_turn, &MotionTwist::rigid_move};
+constexpr std::array<double Vec3::*, 3> kAxes{&Vec3::x, &Vec3::y, &Vec3::z};
+constexpr int kUnknowns = 18;
+using Row = Eigen::Matrix<double, kUnknowns, 1>;
+
+double& unknown(MotionTwist& motion, int index) {
+  return motion.*kParts[static_cast<std::size_t>(index / 3)].*
+         kAxes[static_cast<std::size_t>(index % 3)];
+}
+
+/// One return with the motion undone, as its beam sees it.
+struct Undone {
+  Vec3 fixed, point;  ///< rigid part taken off; all of the motion taken off
+  double s = 0;
+  double up = 0, across = 0;    ///< metres from the cone, and from the nearest encoder position
+  Vec3 up_slope, across_slope;  ///< their derivatives by `point`
+};
+
+std::optional<Undone> undo(const MotionTwist& motion, const BeamModel& model, const Vec3& moved,
+                           const Beam& beam) {
+  const Unmoved unmoved = undo_motion(motion, moved);
+  const auto view = view_along(beam, unmoved.point);
+  if (!view) return std::nullopt;
+  Undone out;
+  out.fixed = rotate(motion.rigid_turn * -1, moved - motion.rigid_move);
+  out.point = unmoved.point;
+  out.s = unmoved.s;
+  out.up = view->up_m;
+  const double pitch = kTurn / model.slots, rho = view->distance_m;
+  // Position 0 is at -pi, a whole number of steps from 0 only if there is an even number of them.
+  out.across = std::remainder(view->encoder + std::numbers::pi, pitch) * rho;
+  const Vec3& p = out.point;
+  const double u = std::sqrt(rho * rho - beam.lateral_m * beam.lateral_m);
+  const double fall = -std::sin(beam.elevation) / u, lean = beam.lateral_m / u;
+  out.up_slope = {fall * p.x, fall * p.y, std::cos(beam.elevation)};
+  out.across_slope = {(lean * p.x - p.y) / rho, (lean * p.y + p.x) / rho, 0};
+  return out;
+}
+
+/// Derivative of a residual, whose slope by the undone point is given, by the 18 unknowns. The
+/// change of s is left out: it is smaller by |turn| / 2 pi.
+Row derivative(const MotionTwist& motion, const Undone& at, const Vec3& slope) {
+  const double s = at.s, square = s * s;
+  const Vec3 by_turn = cross(slope, at.point);
+  const Vec3 before = rotate(motion.turn * s + motion.turn2 * square, slope);
+  const Vec3 by_rigid_turn = cross(before, at.fixed);
+  const Vec3 by_rigid_move = rotate(motion.rigid_turn, before) * -1;
+  const std::array<Vec3, 6> parts{by_turn * s,      before * -s,   by_turn * square,
+                                  before * -square, by_rigid_turn, by_rigid_move};
+  Row row;
+  for (int i = 0; i < 6; ++i) {
+    const Vec3& part = parts[static_cast<std::size_t>(i)];
+    row.segment<3>(3 * i) << part.x, part.y, part.z;
+  }
+  return row;
+}
+
+struct Step {
+  std::span<const int> free;  ///< unknowns to be found
+  double scale_m = 0;         ///< residuals beyond it count little
+  bool with_across = false;   ///< fit encoder positions too
+  std::size_t stride = 1;     ///< use every so many returns of the sample
+};
+
+/// One Gauss-Newton step with weights that fall off with the residual.
+void improve(MotionTwist& motion, const LatticeSample& sample, const BeamModel& model,
+             const Step& step) {
+  Eigen::Matrix<double, kUnknowns, kUnknowns> normal;
+  normal.setZero();
+  Row right = Row::Zero();
+  const auto add = [&](const Undone& at, double residual, const Vec3& slope) {
+    const double ratio = residual / step.scale_m;
+    const double weight = 1 / ((1 + ratio * ratio) * (1 + ratio * ratio));
+    const Row row = derivative(motion, at, slope);
+    normal.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
+    right -= row * (weight * residual);
+  };
+  for (std::size_t i = 0; i < sample.points.size(); i += step.stride) {
+    const auto at = undo(motion, model, sample.points[i], model.beams[sample.rings[i]]);
+    if (!at) continue;
+    add(*at, at->up, at->up_slope);
+    if (step.with_across) add(*at, at->across, at->across_slope);
+  }
+  const auto n = static_cast<Eigen::Index>(step.free.size());
+  Eigen::MatrixXd small(n, n);
+  Eigen::VectorXd small_right(n);
+  for (Eigen::Index r = 0; r < n; ++r) {
+    const int row = step.free[static_cast<std::size_t>(r)];
+    small_right(r) = right(row);
+    for (Eigen::Index c = 0; c <= r; ++c) {
+      const int column = step.free[static_cast<std::size_t>(c)];
+      small(r, c) = normal(std::max(row, column), std::min(row, column));
+    }
+    small(r, r) *= 1 + 1e-9;
+    small(r, r) += 1e-12;
+  }
+  const Eigen::VectorXd change = small.selfadjointView<Eigen::Lower>().ldlt().solve(small_right);
+  if (!change.allFinite()) return;
+  for (Eigen::Index r = 0; r < n; ++r) {
+    unknown(motion, step.free[static_cast<std::size_t>(r)]) += change(r);
+  }
+}
+
+constexpr std::array kAllButYaw{0, 1, 3, 4, 5};
+constexpr std::array kTwist{0, 1, 2, 3, 4, 5};
+// A rigid turn about the axis only renames the encoder positions.
+constexpr std::array kQuadratic{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 15, 16, 17};
+
+/// Yaw rates within which a scan is looked for, radians a turn of the sensor.
+constexpr double kMostYaw = .35;
+constexpr double kNoise_m = .0006;  // of a coordinate rounded to millimetres, across a ray
+constexpr std::size_t kYawReturns = 3000;
+
+/// The yaw at which encoder angles agree best with the positions: how much the returns' phases
+/// within a step are alike, for every yaw.
+double scan_yaw(const LatticeSample& sample, const BeamModel& model, const MotionTwist& motion) {
+  struct Phasor {
+    std::complex<double> now, step;
+  };
+  std::vector<Phasor> phasors;
+  const double slots = model.slots;
+  const double pace = 1.2 / slots;  // of yaw: .6 radians of phase at most
+  const std::size_t stride = std::max<std::size_t>(1, sample.points.size() / kYawReturns);
+  for (std::size_t i = 0; i < sample.points.size(); i += stride) {
+    const Beam& beam = model.beams[sample.rings[i]];
+    const Unmoved unmoved = undo_motion(motion, sample.points[i]);
+    const auto view = view_along(beam, unmoved.point);
+    if (!view) continue;
+    const double blur = kNoise_m / view->distance_m * slots;  // radians of phase
+    const double weight = std::exp(-blur * blur);
+    if (weight < .1) continue;
+    const double phase = (view->encoder + std::numbers::pi) * slots;
+    phasors.push_back({std::polar(weight, phase + kMostYaw * unmoved.s * slots),
+                       std::polar(1.0, -pace * unmoved.s * slots)});
+  }
+  double best = -1, best_rate = 0;
+  const int steps = static_cast<int>(2 * kMostYaw / pace);
+  for (int k = 0; k <= steps; ++k) {
+    std::complex<double> sum = 0;
+    for (Phasor& phasor : phasors) {
+      sum += phasor.now;
+      phasor.now *= phasor.step;
+    }
+    if (std::norm(sum) > best) {
+      best = std::norm(sum);
+      best_rate = -kMostYaw + pace * k;
+    }
+  }
+  // Undoing a yaw of w turns azimuth z to z / (1 + w / 2 pi): s w is linear in the old azimuth.
+  return best_rate / (1 - best_rate / kTurn);
+}
+
+}  // namespace
+
+SampleQuality measure(const LatticeSample& sample, const BeamModel& model,
+                      const MotionTwist& motion, double tolerance_m) {
+  std::vector<double> up, across;
+  std::size_t good = 0;
+  for (std::size_t i = 0; i < sample.points.size(); ++i) {
+    const auto at = undo(motion, model, sample.points[i], model.beams[sample.rings[i]]);
+    if (!at) continue;
+    up.push_back(std::abs(at->up));
+    across.push_back(std::abs(at->across));
+    if (up.back() < tolerance_m && across.back() < tolerance_m) ++good;
+  }
+  if (up.empty()) return {};
+  return {median(up), median(across),
+          static_cast<double>(good) / static_cast<double>(sample.points.size())};
+}
+
+MotionTwist search_motion(const LatticeSample& sample, const BeamModel& model) {
+  MotionTwist motion;
+  // Elevations say all but the yaw. Scales shrink as the residuals do; few returns do at first.
+  const std::size_t coarse = std::max<std::size_t>(1, sample.points.size() / 4000);
+  for (const double scale : {.3, .1, .05, .02}) {
+    for (int i = 0; i < 4; ++i) improve(motion, sample, model, {kAllButYaw, scale, false, coarse});
+  }
+  for (const double scale : {.01, .003}) {
+    for (int i = 0; i < 3; ++i) improve(motion, sample, model, {kAllButYaw, scale, false, 1});
+  }
+  motion.turn.z = scan_yaw(sample, model, motion);
+  for (const double scale : {.01, .003}) {
+    for (int i = 0; i < 3; ++i) improve(motion, sample, model, {kTwist, scale, true, coarse});
+  }
+  return refine_motion(sample, model, motion, MotionFreedom::twist);
+}
+
+MotionTwist refine_motion(const LatticeSample& sample, const BeamModel& model,
+                          const MotionTwist& start, MotionFreedom freedom) {
+  MotionTwist motion = start;
+  const std::span<const int> free =
+      freedom == MotionFreedom::twist ? std::span<const int>(kTwist) : kQuadratic;
+  for (const double scale : {.003, .001, .001})
+    improve(motion, sample, model, {free, scale, true, 1});
+  return motion;
+}
+
+}  // namespace curlidar

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The motion of a compensated scan, found from the scan alone: undone, returns lie on their beams.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sensor/lattice.hpp"
+
+namespace curlidar {
+
+/// Some returns of a scan and the beams that saw them.
+struct LatticeSample {
+  std::vector<Vec3> points;
+  std::vector<std::uint16_t> rings;  ///< index into the model's beams
+};
+
+/// How far the returns of a sample are from the lattice, metres.
+struct SampleQuality {
+  double up_median_m = 0;      ///< from the cones of the beams
+  double across_median_m = 0;  ///< from the nearest encoder position
+  double share = 0;            ///< of the returns within the tolerance of both
+};
+SampleQuality measure(const LatticeSample& sample, const BeamModel& model,
+                      const MotionTwist& motion, double tolerance_m);
+
+/// How many of the 18 numbers of a motion may differ from zero.
+enum class MotionFreedom {
+  twist,      ///< one turn and move for the whole scan: 6
+  quadratic,  ///< also rates that change, and a rigid transform: 18
+};
+
+/// The motion that brings a sample onto the lattice as well as possible; whether that is good
+/// enough is for the caller to measure. From no motion at all, or from `start`. Costs about 100
+/// passes over the sample; deterministic.
+MotionTwist search_motion(const LatticeSample& sample, const BeamModel& model);
+/// Improves a motion that is right to a fraction of an encoder step.
+MotionTwist refine_motion(const LatticeSample& sample, const BeamModel& model,
+                          const MotionTwist& start, MotionFreedom freedom);
+
+}  // namespace curlidar
