@@ -44,30 +44,39 @@ FixedPoint turned(const Turn& w, const FixedPoint& p) {
   return result;
 }
 
-/// t cos e in Q46 would not fit: here in Q16.
-std::int64_t level_range(const Ray& ray, const SinCos& up, std::int32_t range) {
-  return shift_right_round((std::int64_t{range} + ray.range_phase) * up.cos, 30);
+/// t, in 2^-32 m.
+std::int64_t along_ray(const Ray& ray, std::int64_t range) {
+  return range + std::int64_t{ray.range_phase} * 65536;
 }
 
 }  // namespace
 
+std::int64_t exact_range(std::int32_t range, std::uint64_t unit_q32) {
+  const std::int64_t exact = std::int64_t{range} * 65536;
+  if (unit_q32 == 0) return exact;
+  const auto unit = static_cast<std::int64_t>(unit_q32);
+  return div_round(exact, unit) * unit;
+}
+
 FixedPoint point_on_ray(const Ray& ray, const SinCos& up, std::uint32_t azimuth,
-                        std::int32_t range) {
+                        std::int64_t range) {
   const SinCos around = sin_cos_q30(azimuth);
-  const std::int64_t t = std::int64_t{range} + ray.range_phase;
-  const auto along = [&](std::int64_t part) { return t * shift_right_round(part * up.cos, 30); };
+  const std::int64_t t = along_ray(ray, range);
+  const auto level = [&](std::int64_t part) {
+    return mul_shift(t, shift_right_round(part * up.cos, 30), 16);
+  };
   const std::int64_t lateral = ray.lateral;
-  return limited(FixedPoint{
-      shift_right_round(along(around.cos) - lateral * around.sin, 10),
-      shift_right_round(along(around.sin) + lateral * around.cos, 10),
-      shift_right_round(t * up.sin, 10) + std::int64_t{ray.height} * (std::int64_t{1} << 20)});
+  return limited(FixedPoint{shift_right_round(level(around.cos) - lateral * around.sin, 10),
+                            shift_right_round(level(around.sin) + lateral * around.cos, 10),
+                            shift_right_round(mul_shift(t, up.sin, 16), 10) +
+                                std::int64_t{ray.height} * (std::int64_t{1} << 20)});
 }
 
 std::uint32_t azimuth_on_ray(const Ray& ray, const SinCos& up, std::uint32_t azimuth,
-                             std::int32_t range) {
+                             std::int64_t range) {
   constexpr std::int64_t kAnglePerRadian = 683565276;  // round(2^32 / 2 pi)
   constexpr std::int64_t kHalf = std::int64_t{1} << 29;
-  const std::int64_t u = level_range(ray, up, range);
+  const std::int64_t u = mul_shift(along_ray(ray, range), up.cos, 46);
   const std::int64_t lateral = ray.lateral;
   std::int64_t x = 0;
   if (u > 0) {
@@ -116,9 +125,10 @@ FixedPoint RayPoints::fixed(std::uint32_t row, std::uint32_t column, std::int32_
   const Ray& ray = rays_.rays[row];
   const SinCos& up = elevations_[row];
   const std::uint32_t azimuth = rays_.azimuth_of(row, column);
-  const FixedPoint point = point_on_ray(ray, up, azimuth, range);
+  const std::int64_t exact = exact_range(range, rays_.range_unit_q32);
+  const FixedPoint point = point_on_ray(ray, up, azimuth, exact);
   if (!moves_) return point;
-  return moved(point, azimuth_on_ray(ray, up, azimuth, range), rays_.motion);
+  return moved(point, azimuth_on_ray(ray, up, azimuth, exact), rays_.motion);
 }
 
 }  // namespace curlidar::compact

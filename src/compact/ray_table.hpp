@@ -48,8 +48,11 @@ struct RayTable {
   std::vector<Ray> rays;  ///< of each row
   Motion motion;
 
-  /// Which frozen table (ray_tables.hpp) elevations and rays are, 0 = none: then they are written
-  /// out in units of 2^(the shifts).
+  /// If not 0, ranges are rounded to multiples of so many 2^-32 m before they become points.
+  std::uint64_t range_unit_q32 = 0;
+
+  /// Which frozen table (ray_tables.hpp) slots, elevations, rays and, if any, range unit are; 0 =
+  /// none: then they are written out, angles and lengths of rays in units of 2^(their shifts).
   std::uint32_t table = 0;
   std::uint32_t azimuth_shift = 0, height_shift = 0, lateral_shift = 0, phase_shift = 0;
   /// The numbers of the motion are multiples of 2^(these): turns and moves.

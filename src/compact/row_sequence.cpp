@@ -1,62 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compact/row_sequence.hpp"
 
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <cstdlib>
 
+#include "compact/number_models.hpp"
 #include "compact/scan_types.hpp"
 #include "entropy/model.hpp"
-#include "fixed/fixed.hpp"
 
 namespace curlidar::compact {
 namespace {
 
 constexpr std::uint32_t kSmoothings = 4;
-constexpr std::uint32_t kLimit = 30;
-constexpr std::uint32_t kClasses = 33;
-
-/// A number of up to 32 bits and its sign: zero flag, sign, class of the magnitude less one, its
-/// bits from the top.
-class NumberModels {
- public:
-  template <class Coder>
-  std::int64_t code(Coder& coder, std::int64_t value) {
-    const bool zero = code_bit(coder, zero_[last_zero_], kLimit, value == 0);
-    last_zero_ = zero ? 1 : 0;
-    if (zero) return 0;
-    const bool negative = code_bit(coder, sign_, kLimit, value < 0);
-    const auto target = static_cast<std::uint64_t>(std::abs(value)) - (value != 0);
-    const auto target_size = static_cast<std::size_t>(std::bit_width(target));
-    std::size_t size = 0;
-    while (size + 1 < kClasses && code_bit(coder, size_[size], kLimit, target_size > size)) ++size;
-    std::uint64_t magnitude = size > 0 ? 1 : 0;
-    for (std::size_t place = size > 0 ? size - 1 : 0; place-- > 0;) {
-      const bool bit = (target >> place & 1) != 0;
-      const bool coded =
-          place + 2 == size ? code_bit(coder, top_[size], kLimit, bit) : coder.code(32768, bit);
-      magnitude = magnitude << 1 | (coded ? 1 : 0);
-    }
-    const auto found = static_cast<std::int64_t>(magnitude + 1);
-    return negative ? -found : found;
-  }
-
- private:
-  std::array<BitModel, 2> zero_;
-  BitModel sign_;
-  std::array<BitModel, kClasses> size_, top_;
-  std::size_t last_zero_ = 0;
-};
-
-template <class Coder>
-std::uint32_t code_plain(Coder& coder, std::uint32_t value, int bits) {
-  std::uint32_t found = 0;
-  for (int i = bits; i-- > 0;) {
-    found = found << 1 | (coder.code(32768, (value >> i & 1) != 0) ? 1u : 0u);
-  }
-  return found;
-}
 
 /// The mean of what came before, in 1/256, that forgets by 2^-smoothing.
 class Expectation {

@@ -9,6 +9,7 @@
 
 #include "base/parallel.hpp"
 #include "base/try.hpp"
+#include "compact/ray_chunk.hpp"
 #include "compact/scan_header.hpp"
 #include "compact/scan_segment.hpp"
 
@@ -216,6 +217,15 @@ Result<ScanHeader> decode_scan_header(const ScanChunks& chunks, const ScanLimits
   CURLIDAR_TRY_ASSIGN(header, read_parameters(parameters, limits));
   CURLIDAR_TRY_ASSIGN(rows, require(chunks, ScanPart::sensor));
   CURLIDAR_TRY(read_rows(rows, header.parameters.rows, header.table));
+  if (const ScanChunkView* rays = find(chunks, ScanPart::rays);
+      rays != nullptr && !header.table.rays) {
+    return scan_error(ErrorCode::corrupt, ScanPart::rays, rays->offset,
+                      "rays of a scan that has none");
+  }
+  if (header.table.rays) {
+    CURLIDAR_TRY_ASSIGN(rays, require(chunks, ScanPart::rays));
+    CURLIDAR_TRY(read_rays(rays, header.parameters.rows, header.parameters.columns, header.table));
+  }
   return header;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/parallel.hpp"
 #include "base/try.hpp"
+#include "compact/ray_chunk.hpp"
 #include "compact/scan_header.hpp"
 #include "compact/scan_segment.hpp"
 
@@ -141,7 +142,7 @@ void add_segment_chunks(std::vector<EncodedSegment>& segments, bool residual, bo
 /// Counts the small chunks and the frames of all.
 void count_frames(EncodedScan& out) {
   for (const ScanChunk& chunk : out.chunks) {
-    const bool small = chunk.part < ScanPart::mask;
+    const bool small = chunk.part < ScanPart::mask || chunk.part == ScanPart::rays;
     out.breakdown.header += 8 * static_cast<double>(frame_size(chunk.payload.size()) +
                                                     (small ? chunk.payload.size() : 0));
   }
@@ -171,6 +172,7 @@ Result<EncodedScan> encode_scan(const Image& image, const RowTable& table,
   }
   out.chunks.push_back({ScanPart::parameters, write_parameters(parameters, table)});
   out.chunks.push_back({ScanPart::sensor, write_rows(table)});
+  if (table.rays) out.chunks.push_back({ScanPart::rays, write_rays(table)});
   add_segment_chunks(segments, parameters.residual_step > 0, settings.index && places.size() > 1,
                      out.chunks);
   count_frames(out);

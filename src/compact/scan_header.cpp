@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/try.hpp"
+#include "compact/ray_chunk.hpp"
 #include "compact/row_sequence.hpp"
 
 namespace curlidar::compact {
@@ -16,7 +17,7 @@ constexpr std::uint32_t kHasResidual = 1u << 3, kHasSegments = 1u << 4, kHasTurn
                         kHasLattice = 1u << 6;
 constexpr std::uint32_t kReserved = 1u << 7;
 // Flags of the sensor table.
-constexpr std::uint32_t kHasHeights = 1u << 0, kHasOffsets = 1u << 1;
+constexpr std::uint32_t kHasHeights = 1u << 0, kHasOffsets = 1u << 1, kHasRays = 1u << 2;
 
 constexpr std::uint32_t kMaxRootLog2 = 5;
 constexpr std::uint32_t kMaxSmallestLeaf = 1u << (2 * kMaxRootLog2);
@@ -117,6 +118,10 @@ Status check_header(const ScanParameters& p, const RowTable& t) {
       (!t.range_offset.empty() && t.range_offset.size() != p.rows)) {
     return invalid("heights and range offsets need one number for each row, or none at all");
   }
+  if (t.rays) {
+    CURLIDAR_TRY(check_rays(t, p.rows, p.columns));
+    return check_sequence(t.range_offset, t.offset_shift, kMaxRowOffset, "range offset");
+  }
   CURLIDAR_TRY(check_sequence(t.elevation, t.elevation_shift, kMaxElevation, "elevation"));
   CURLIDAR_TRY(check_sequence(t.height, t.height_shift, kMaxRowOffset, "height"));
   return check_sequence(t.range_offset, t.offset_shift, kMaxRowOffset, "range offset");
@@ -197,11 +202,13 @@ Result<ScanHeader> read_parameters(const ScanChunkView& chunk, const ScanLimits&
 }
 
 std::vector<std::byte> write_rows(const RowTable& t) {
-  const std::uint32_t flags =
-      (t.height.empty() ? 0 : kHasHeights) | (t.range_offset.empty() ? 0 : kHasOffsets);
+  const std::uint32_t flags = (t.height.empty() ? 0 : kHasHeights) |
+                              (t.range_offset.empty() ? 0 : kHasOffsets) | (t.rays ? kHasRays : 0);
   std::vector<std::byte> payload{static_cast<std::byte>(flags)};
   RangeEncoder encoder;
-  write_sequence(encoder, t.elevation, t.elevation_shift, SequenceKind::steady_differences);
+  if (!t.rays) {
+    write_sequence(encoder, t.elevation, t.elevation_shift, SequenceKind::steady_differences);
+  }
   if (!t.height.empty()) write_sequence(encoder, t.height, t.height_shift, SequenceKind::steady);
   if (!t.range_offset.empty()) {
     write_sequence(encoder, t.range_offset, t.offset_shift, SequenceKind::steady);
@@ -217,13 +224,17 @@ Status read_rows(const ScanChunkView& chunk, std::uint32_t rows, RowTable& t) {
   };
   if (chunk.payload.empty()) return corrupt("the payload is empty");
   const auto flags = static_cast<std::uint32_t>(chunk.payload[0]);
-  if ((flags & ~(kHasHeights | kHasOffsets)) != 0) {
+  if ((flags & ~(kHasHeights | kHasOffsets | kHasRays)) != 0) {
     return scan_error(ErrorCode::unsupported, chunk.part, chunk.offset,
                       "flags of a later version; use a newer release of curlidar");
   }
+  if ((flags & kHasRays) != 0) {
+    if ((flags & kHasHeights) != 0) return corrupt("heights beside rays");
+    t.rays.emplace();
+  }
   RangeDecoder decoder(chunk.payload.subspan(1));
-  bool good = read_sequence(decoder, rows, kMaxElevation, t.elevation, t.elevation_shift,
-                            SequenceKind::steady_differences);
+  bool good = t.rays || read_sequence(decoder, rows, kMaxElevation, t.elevation, t.elevation_shift,
+                                      SequenceKind::steady_differences);
   if (good && (flags & kHasHeights) != 0) {
     good =
         read_sequence(decoder, rows, kMaxRowOffset, t.height, t.height_shift, SequenceKind::steady);

@@ -25,7 +25,8 @@ Result<ScanHeader> read_parameters(const ScanChunkView& chunk, const ScanLimits&
 
 /// Rows of a table by the range coder: some 4 bits an elevation where rings are irregular.
 std::vector<std::byte> write_rows(const RowTable& table);
-/// Fills the table's rows; `rows` has been checked against the limits.
+/// Fills the table's rows; `rows` has been checked against the limits. Of a table with rays, whose
+/// elevations are in the chunk of the rays, it makes room for these.
 Status read_rows(const ScanChunkView& chunk, std::uint32_t rows, RowTable& table);
 
 /// Sizes of the payloads of all masks, fields, residuals.

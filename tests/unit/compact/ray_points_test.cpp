@@ -40,8 +40,9 @@ Vector turned(const Vector& w, const Vector& p) {
 }
 
 Vector reference_point(const Ray& ray, std::uint32_t elevation, std::uint32_t azimuth,
-                       std::int32_t range) {
-  const double t = (static_cast<double>(range) + ray.range_phase) / 65536, e = radians(elevation);
+                       std::int64_t range) {
+  const double t = static_cast<double>(range) / 4294967296.0 + ray.range_phase / 65536.0,
+               e = radians(elevation);
   const double a = radians(azimuth), u = t * std::cos(e), l = ray.lateral / 65536.0;
   return {u * std::cos(a) - l * std::sin(a), u * std::sin(a) + l * std::cos(a),
           t * std::sin(e) + ray.height / 65536.0};
@@ -98,7 +99,7 @@ TEST(RayPoints, LieAlongTheirRays) {
     const Ray ray = some_ray(random);
     const auto azimuth = static_cast<std::uint32_t>(random.next());
     const auto elevation = static_cast<std::uint32_t>(between(random, 1 << 30));
-    const auto range = static_cast<std::int32_t>(1 + random.below(200u << 16));
+    const auto range = static_cast<std::int64_t>(1 + random.below(200u << 16)) * 65536;
     const FixedPoint p = point_on_ray(ray, sin_cos_q30(elevation), azimuth, range);
     EXPECT_LT(distance(reference_point(ray, elevation, azimuth, range), p), 1e-6);
   }
@@ -110,7 +111,7 @@ TEST(RayPoints, AzimuthOfThePointIsThatOfItsCoordinates) {
     const Ray ray = some_ray(random);
     const auto azimuth = static_cast<std::uint32_t>(random.next());
     const auto elevation = static_cast<std::uint32_t>(between(random, 1 << 28));
-    const auto range = static_cast<std::int32_t>((2u << 16) + random.below(200u << 16));
+    const auto range = static_cast<std::int64_t>((2u << 16) + random.below(200u << 16)) * 65536;
     const Vector p = reference_point(ray, elevation, azimuth, range);
     const std::uint32_t found = azimuth_on_ray(ray, sin_cos_q30(elevation), azimuth, range);
     EXPECT_NEAR(std::remainder(radians(found) - std::atan2(p[1], p[0]), 2 * std::numbers::pi), 0,
@@ -163,8 +164,9 @@ TEST(RayPoints, TableGivesThePointOfRowAndFiring) {
             0x80000000u +
             static_cast<std::uint32_t>((std::uint64_t{rays.firings[firing]} << 32) / 4000) +
             static_cast<std::uint32_t>(rays.rays[row].azimuth_offset);
-        Vector wanted = reference_point(
-            rays.rays[row], static_cast<std::uint32_t>(table.elevation[row]), azimuth, 20 << 16);
+        Vector wanted =
+            reference_point(rays.rays[row], static_cast<std::uint32_t>(table.elevation[row]),
+                            azimuth, std::int64_t{20} << 32);
         const double s = std::remainder(std::atan2(wanted[1], wanted[0]) / 2 / std::numbers::pi, 1);
         if (std::abs(s) > .49) continue;  // the seam is a matter of rounding
         wanted = reference_moved(wanted, s, rays.motion);
@@ -172,6 +174,16 @@ TEST(RayPoints, TableGivesThePointOfRowAndFiring) {
         EXPECT_LT(distance(wanted, p), 3e-6) << row << ' ' << column << ' ' << moves;
       }
     }
+  }
+}
+
+TEST(RayPoints, RangesAreRoundedToTheirUnit) {
+  constexpr std::uint64_t unit = 8589935;  // 2 mm
+  for (const std::int32_t k : {0, 1, 2, 333, 59999}) {
+    const auto exact = static_cast<std::int64_t>(k * unit);
+    const auto range = static_cast<std::int32_t>(shift_right_round(exact, 16));
+    EXPECT_EQ(exact_range(range, unit), exact);
+    EXPECT_EQ(exact_range(range, 0), range * std::int64_t{65536});
   }
 }
 
@@ -195,7 +207,7 @@ TEST(RayPoints, TakeAnyNumbers) {
     }
     const SinCos up = sin_cos_q30(static_cast<std::uint32_t>(any()));
     const auto azimuth = static_cast<std::uint32_t>(any());
-    const auto range = static_cast<std::int32_t>(1 + random.below(1u << 30));
+    const auto range = static_cast<std::int64_t>(random.below(std::uint64_t{1} << 47));
     const FixedPoint p = moved(point_on_ray(ray, up, azimuth, range),
                                azimuth_on_ray(ray, up, azimuth, range), motion);
     EXPECT_LE(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}), kFarthestQ36);
