@@ -21,6 +21,8 @@ constexpr std::size_t kSampleReturns = 20000;
 constexpr double kNear_m = 1;
 /// A share that needs no better explanation.
 constexpr double kSurelyRight = .97;
+/// Searches for the motion with rings set right in between: labels by elevation need one or two.
+constexpr int kMostRounds = 4;
 
 std::vector<std::uint32_t> slots_with_returns(const Cloud& cloud) {
   std::vector<std::uint32_t> slots;
@@ -69,21 +71,31 @@ struct Attempt {
   SampleQuality quality;
 };
 
-Attempt attempt(const BeamModel& model, const LatticeSample& sample,
-                const LatticeSettings& settings) {
+Attempt attempt(const BeamModel& model, LatticeSample sample, const LatticeSettings& settings) {
   Attempt out{&model, {}, measure(sample, model, {}, settings.tolerance_m)};
-  if (!settings.motion || out.quality.share > kSurelyRight) return out;
+  const auto done = [&] { return out.quality.share > kSurelyRight; };
+  // More numbers always fit a little better; they must do so clearly.
   const auto consider = [&](const MotionTwist& motion) {
     const SampleQuality quality = measure(sample, model, motion, settings.tolerance_m);
-    // More numbers always fit a little better; they must do so clearly.
-    if (quality.share < out.quality.share + .01) return;
-    out.motion = motion;
-    out.quality = quality;
+    if (quality.share > out.quality.share + .01) out = {&model, motion, quality};
+    return quality.up_median_m;
   };
-  const MotionTwist twist = search_motion(sample, model);
-  consider(twist);
-  if (out.quality.share < kSurelyRight) {
-    consider(refine_motion(sample, model, twist, MotionFreedom::quadratic));
+  // Wrong rings spoil the search for the motion, and an unknown motion spoils the rings.
+  double before = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < kMostRounds && !done() && settings.motion; ++round) {
+    const MotionTwist motion = search_motion(sample, model);
+    consider(motion);
+    if (done() || relabel(sample, model, motion) == 0) break;
+    const double after = consider(motion);
+    if (after > .8 * before) break;
+    before = after;
+  }
+  if (!done() && settings.motion) {
+    consider(search_motion(sample, model, MotionFreedom::quadratic));
+  }
+  if (!done()) {
+    relabel(sample, model, out.motion);
+    consider(out.motion);
   }
   return out;
 }

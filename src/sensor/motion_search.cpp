@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -123,6 +124,8 @@ void improve(MotionTwist& motion, const LatticeSample& sample, const BeamModel& 
 }
 
 constexpr std::array kAllButYaw{0, 1, 3, 4, 5};
+constexpr std::array kRigidButYaw{0, 1, 3, 4, 5, 12, 13, 15, 16, 17};
+constexpr std::array kQuadraticButYaw{0, 1, 3, 4, 5, 6, 7, 9, 10, 11, 12, 13, 15, 16, 17};
 constexpr std::array kTwist{0, 1, 2, 3, 4, 5};
 // A rigid turn about the axis only renames the encoder positions.
 constexpr std::array kQuadratic{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 15, 16, 17};
@@ -189,30 +192,50 @@ SampleQuality measure(const LatticeSample& sample, const BeamModel& model,
           static_cast<double>(good) / static_cast<double>(sample.points.size())};
 }
 
-MotionTwist search_motion(const LatticeSample& sample, const BeamModel& model) {
+std::size_t relabel(LatticeSample& sample, const BeamModel& model, const MotionTwist& motion) {
+  std::vector<double> sines, cosines;
+  for (const Beam& beam : model.beams) {
+    sines.push_back(std::sin(beam.elevation));
+    cosines.push_back(std::cos(beam.elevation));
+  }
+  std::size_t changed = 0;
+  for (std::size_t i = 0; i < sample.points.size(); ++i) {
+    const Vec3 p = undo_motion(motion, sample.points[i]).point;
+    const double square = p.x * p.x + p.y * p.y;
+    double nearest = std::numeric_limits<double>::infinity();
+    std::uint16_t ring = sample.rings[i];
+    for (std::size_t k = 0; k < model.beams.size(); ++k) {
+      const double lateral = model.beams[k].lateral_m;
+      const double u = std::sqrt(std::max(0.0, square - lateral * lateral));
+      const double up = std::abs((p.z - model.beams[k].height_m) * cosines[k] - u * sines[k]);
+      if (up >= nearest) continue;
+      nearest = up;
+      ring = static_cast<std::uint16_t>(k);
+    }
+    if (ring != sample.rings[i]) ++changed;
+    sample.rings[i] = ring;
+  }
+  return changed;
+}
+
+MotionTwist search_motion(const LatticeSample& sample, const BeamModel& model,
+                          MotionFreedom freedom) {
+  const bool rich = freedom == MotionFreedom::quadratic;
   MotionTwist motion;
   // Elevations say all but the yaw. Scales shrink as the residuals do; few returns do at first.
   const std::size_t coarse = std::max<std::size_t>(1, sample.points.size() / 4000);
-  for (const double scale : {.3, .1, .05, .02}) {
-    for (int i = 0; i < 4; ++i) improve(motion, sample, model, {kAllButYaw, scale, false, coarse});
-  }
-  for (const double scale : {.01, .003}) {
-    for (int i = 0; i < 3; ++i) improve(motion, sample, model, {kAllButYaw, scale, false, 1});
-  }
+  const auto fit = [&](std::span<const int> free, double scale, bool across, std::size_t stride,
+                       int steps) {
+    for (int i = 0; i < steps; ++i) improve(motion, sample, model, {free, scale, across, stride});
+  };
+  const std::span<const int> first = rich ? std::span<const int>(kRigidButYaw) : kAllButYaw;
+  for (const double scale : {.3, .1, .05, .02}) fit(first, scale, false, coarse, 4);
+  const std::span<const int> second = rich ? std::span<const int>(kQuadraticButYaw) : kAllButYaw;
+  for (const double scale : {.01, .003}) fit(second, scale, false, 1, 3);
   motion.turn.z = scan_yaw(sample, model, motion);
-  for (const double scale : {.01, .003}) {
-    for (int i = 0; i < 3; ++i) improve(motion, sample, model, {kTwist, scale, true, coarse});
-  }
-  return refine_motion(sample, model, motion, MotionFreedom::twist);
-}
-
-MotionTwist refine_motion(const LatticeSample& sample, const BeamModel& model,
-                          const MotionTwist& start, MotionFreedom freedom) {
-  MotionTwist motion = start;
-  const std::span<const int> free =
-      freedom == MotionFreedom::twist ? std::span<const int>(kTwist) : kQuadratic;
-  for (const double scale : {.003, .001, .001})
-    improve(motion, sample, model, {free, scale, true, 1});
+  const std::span<const int> last = rich ? std::span<const int>(kQuadratic) : kTwist;
+  for (const double scale : {.01, .003}) fit(last, scale, true, coarse, 3);
+  for (const double scale : {.003, .001, .001}) fit(last, scale, true, 1, 1);
   return motion;
 }
 

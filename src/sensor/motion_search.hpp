@@ -31,12 +31,14 @@ enum class MotionFreedom {
   quadratic,  ///< also rates that change, and a rigid transform: 18
 };
 
+/// Gives every return of a sample the ring whose beam's cone is nearest once the motion is undone.
+/// Returns how many changed.
+std::size_t relabel(LatticeSample& sample, const BeamModel& model, const MotionTwist& motion);
+
 /// The motion that brings a sample onto the lattice as well as possible; whether that is good
-/// enough is for the caller to measure. From no motion at all, or from `start`. Costs about 100
-/// passes over the sample; deterministic.
-MotionTwist search_motion(const LatticeSample& sample, const BeamModel& model);
-/// Improves a motion that is right to a fraction of an encoder step.
-MotionTwist refine_motion(const LatticeSample& sample, const BeamModel& model,
-                          const MotionTwist& start, MotionFreedom freedom);
+/// enough is for the caller to measure. Rings that are wrong for many returns spoil it: see
+/// relabel(). Costs about 30 passes over the sample; deterministic.
+MotionTwist search_motion(const LatticeSample& sample, const BeamModel& model,
+                          MotionFreedom freedom = MotionFreedom::twist);
 
 }  // namespace curlidar
