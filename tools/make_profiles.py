@@ -54,6 +54,9 @@ HESAI = {
     "pandarxt32": ("calibration_PandarXT32.csv", "Hesai PandarXT-32 at 10 Hz", 2000, None,
                    (0.05, 130)),
 }
+# name: (encoder positions of a turn, range unit in metres) where nominal beams are exact, as scans
+# that drivers made of them show
+LATTICES = {"hdl32e": (36000, 0.002), "pandarxt16": (2000, 0.004)}
 # name: (rings, fov up, fov down, description, range)
 UNIFORM = {
     f"{model}-{rings}": (rings, half, -half,
@@ -83,7 +86,11 @@ def write(directory, name, description, source, columns, fov, limits, rings):
     text = [f"# {line}" for line in source]
     text += [f'name = "{name}"', f'description = "{description}"', f"columns = {columns}",
              f"fov_up_deg = {fov[0]!r}", f"fov_down_deg = {fov[1]!r}",
-             f"min_range_m = {limits[0]}", f"max_range_m = {limits[1]}", "", "[rings]", rings, ""]
+             f"min_range_m = {limits[0]}", f"max_range_m = {limits[1]}"]
+    if name in LATTICES:
+        slots, unit = LATTICES[name]
+        text += [f"slots = {slots}", f"range_unit_m = {unit}"]
+    text += ["", "[rings]", rings, ""]
     (directory / f"{name}.toml").write_text("\n".join(text), encoding="utf-8")
 
 

@@ -71,7 +71,9 @@ struct Attempt {
   SampleQuality quality;
 };
 
-Attempt attempt(const BeamModel& model, LatticeSample sample, const LatticeSettings& settings) {
+Attempt attempt(const BeamModel& model, const LatticeSample& drawn,
+                const LatticeSettings& settings) {
+  LatticeSample sample = drawn;
   Attempt out{&model, {}, measure(sample, model, {}, settings.tolerance_m)};
   const auto done = [&] { return out.quality.share > kSurelyRight; };
   // More numbers always fit a little better; they must do so clearly.
@@ -91,6 +93,7 @@ Attempt attempt(const BeamModel& model, LatticeSample sample, const LatticeSetti
     before = after;
   }
   if (!done() && settings.motion) {
+    sample = drawn;
     consider(search_motion(sample, model, MotionFreedom::quadratic));
   }
   if (!done()) {
@@ -153,7 +156,8 @@ void measure_residuals(LatticeFit& fit, const Placement& placement,
     }
   }
   fit.placed = placement.places.size();
-  fit.share = static_cast<double>(good) / static_cast<double>(fit.returns);
+  fit.sharing = placement.sharing;
+  fit.share = static_cast<double>(good + fit.sharing) / static_cast<double>(fit.returns);
   if (across.empty()) return;
   fit.residuals = {percentile(across, .5), percentile(across, .95), percentile(up, .5),
                    percentile(up, .95)};
@@ -169,6 +173,13 @@ void add_notes(LatticeFit& fit) {
       "encoder positions), {:.2f} mm across and {:.2f} mm above their rays (median).",
       100.0 * static_cast<double>(fit.placed) / static_cast<double>(fit.returns),
       fit.firings.size(), fit.beams.slots, r.across_median_m * 1e3, r.up_median_m * 1e3));
+  if (fit.sharing > 0) {
+    fit.notes.push_back(
+        fmt::format("{} returns lie along a ray that another return has already (second returns, "
+                    "or the turn is "
+                    "a little more than full); they are kept as single points.",
+                    fit.sharing));
+  }
   if (fit.motion.none()) return;
   fit.notes.push_back(
       fmt::format("The scan is motion-compensated: {:.2f} m and {:.2f} degrees a "
@@ -234,7 +245,11 @@ Result<std::optional<LatticeFit>> find_lattice(const Cloud& cloud, const Detecti
     return std::optional<LatticeFit>();
   }
   LatticeFit fit = place_all(cloud, rings, returns, best, settings);
-  if (fit.share < settings.min_share) return std::optional<LatticeFit>();
+  const double cells = static_cast<double>(fit.firings.size() * fit.beams.beams.size());
+  if (fit.share < settings.min_share ||
+      static_cast<double>(fit.placed) < settings.min_occupancy * cells) {
+    return std::optional<LatticeFit>();
+  }
   return std::optional<LatticeFit>(std::move(fit));
 }
 

@@ -44,6 +44,9 @@ struct BeamModel {
 /// beam origins become lateral, height and phase); nothing for other profiles.
 std::optional<BeamModel> beam_model_of(const SensorProfile& profile);
 
+/// beam_model_of() of the built-in profiles that have one, by name. Read once.
+std::span<const BeamModel> builtin_beam_models();
+
 inline constexpr std::uint32_t kNoFiring = 0xffffffff;
 
 struct LatticeSettings {
@@ -51,6 +54,9 @@ struct LatticeSettings {
   double tolerance_m = .0015;  ///< a return counts as on the lattice within this of its place
   double reach_m = .004;       ///< a return within this of a free place is still put there
   double min_share = .8;       ///< returns that must lie on the lattice for it to be accepted
+  /// Cells (rings x firings) that must hold a return. Where lasers of one column have positions of
+  /// their own, as a VLP-16's do, hardly any do, and the lattice is no help.
+  double min_occupancy = .1;
 };
 
 /// Distances of the returns on the lattice from their places on it, metres.
@@ -71,7 +77,9 @@ struct LatticeFit {
   std::vector<double> range_of_point;          ///< r along the ray (phase taken off), metres
   /// Returns whose place is theirs alone; the others have kNoFiring.
   std::size_t placed = 0, returns = 0;
-  double share = 0;  ///< of the returns that lie within the tolerance of their place
+  /// Returns without a place that lie along a ray which another return has: second returns.
+  std::size_t sharing = 0;
+  double share = 0;  ///< of the returns that lie within the tolerance of a ray
   LatticeResiduals residuals;
   std::vector<std::string> notes;  ///< what a user should know, one sentence each
 };

@@ -69,6 +69,10 @@ std::vector<std::uint8_t> occupied_positions(const std::vector<Sighting>& sighti
 struct Candidate {
   std::uint32_t sighting = 0, firing = 0;
   double across_m = 0, residual_m = 0;
+
+  /// Residuals that differ by less are equally good: of two returns along one ray, the first in the
+  /// file is to have the place.
+  int grade() const { return static_cast<int>(residual_m / .00025); }
 };
 
 /// Every firing that a return may belong to.
@@ -93,8 +97,9 @@ std::vector<Candidate> find_candidates(const std::vector<Sighting>& sightings,
     }
   }
   std::sort(out.begin(), out.end(), [](const Candidate& a, const Candidate& b) {
-    if (a.residual_m != b.residual_m) return a.residual_m < b.residual_m;
-    return a.sighting != b.sighting ? a.sighting < b.sighting : a.firing < b.firing;
+    if (a.grade() != b.grade()) return a.grade() < b.grade();
+    if (a.sighting != b.sighting) return a.sighting < b.sighting;
+    return a.residual_m != b.residual_m ? a.residual_m < b.residual_m : a.firing < b.firing;
   });
   return out;
 }
@@ -129,12 +134,19 @@ Placement place_returns(const std::vector<Sighting>& sightings, const BeamModel&
   for (const Sighting& sighting : sightings) last_slot = std::max(last_slot, sighting.slot);
   std::vector<std::uint8_t> placed(std::size_t{last_slot} + 1, 0);
   std::vector<std::uint8_t> taken(placement.firings.size() * model.beams.size(), 0);
-  for (const Candidate& candidate : find_candidates(sightings, firing_at, reach_m)) {
+  const std::vector<Candidate> candidates = find_candidates(sightings, firing_at, reach_m);
+  for (const Candidate& candidate : candidates) {
     const Sighting& sighting = sightings[candidate.sighting];
     auto& cell = taken[sighting.ring * placement.firings.size() + candidate.firing];
     if (placed[sighting.slot] != 0 || cell != 0) continue;
     placed[sighting.slot] = cell = 1;
     placement.places.push_back({candidate.sighting, candidate.firing, candidate.across_m});
+  }
+  for (const Candidate& candidate : candidates) {
+    auto& known = placed[sightings[candidate.sighting].slot];
+    if (known != 0 || candidate.residual_m > tolerance_m) continue;
+    known = 1;
+    ++placement.sharing;
   }
   drop_unused(placement);
   return placement;

@@ -27,10 +27,13 @@ struct Placement {
     double across_m = 0;
   };
   std::vector<Place> places;  ///< at most one a cell and a return
+  /// Returns within the tolerance of a ray whose places others took: second returns, mostly.
+  std::size_t sharing = 0;
 };
 
 /// Encoder positions at which lasers fired, as few as explain the returns, and who is where. A
-/// return within tolerance_m of a ray comes before those within reach_m; the nearer first.
+/// return within tolerance_m of a ray comes before those within reach_m; clearly nearer ones first,
+/// then in the order of the sightings.
 Placement place_returns(const std::vector<Sighting>& sightings, const BeamModel& model,
                         double tolerance_m, double reach_m);
 

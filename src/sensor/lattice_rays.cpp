@@ -28,6 +28,19 @@ std::optional<BeamModel> beam_model_of(const SensorProfile& profile) {
   return model;
 }
 
+std::span<const BeamModel> builtin_beam_models() {
+  static const std::vector<BeamModel> models = [] {
+    std::vector<BeamModel> out;
+    for (const std::string& name : builtin_sensor_names()) {
+      const auto profile = builtin_sensor(name);
+      if (!profile) continue;
+      if (auto model = beam_model_of(*profile)) out.push_back(std::move(*model));
+    }
+    return out;
+  }();
+  return models;
+}
+
 Vec3 lattice_point(const BeamModel& model, std::size_t ring, std::uint32_t position, double range) {
   const Beam& beam = model.beams[ring];
   const double a =

@@ -16,8 +16,8 @@ namespace {
 struct Expected {
   const char* path;
   bool compensated;
-  std::size_t most_loose;
-  double residual_m;  ///< 95th percentile, across and up
+  std::size_t most_loose;  ///< the XT16 scan has second returns
+  double residual_m;       ///< 95th percentile, across and up
 };
 
 void PrintTo(const Expected& expected, std::ostream* out) {
@@ -27,10 +27,10 @@ void PrintTo(const Expected& expected, std::ostream* out) {
 class LatticeReal : public testing::TestWithParam<Expected> {};
 
 std::vector<BeamModel> candidates() {
-  auto hdl32e = builtin_sensor("hdl32e");
-  hdl32e->slots = 36000;
-  hdl32e->range_unit_m = .002;
-  return {test::frozen_table("hdl64e-kitti"), *beam_model_of(*hdl32e)};
+  const auto builtin = builtin_beam_models();
+  std::vector<BeamModel> models(builtin.begin(), builtin.end());
+  models.push_back(test::frozen_table("hdl64e-kitti"));
+  return models;
 }
 
 TEST_P(LatticeReal, LiesOnItsLattice) {
@@ -48,7 +48,7 @@ TEST_P(LatticeReal, LiesOnItsLattice) {
   EXPECT_EQ(fit.motion.none(), !GetParam().compensated);
   EXPECT_EQ(fit.returns, rings->returns);
   EXPECT_LE(fit.returns - fit.placed, GetParam().most_loose);
-  EXPECT_GT(fit.share, .9999);
+  EXPECT_GT(fit.share, .999);
   EXPECT_LT(fit.residuals.across_p95_m, GetParam().residual_m);
   EXPECT_LT(fit.residuals.up_p95_m, GetParam().residual_m);
   EXPECT_LT(fit.residuals.range_p95_m, GetParam().residual_m);
@@ -62,6 +62,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Expected{"kitti_raw/curl_example/0.pcd", true, 1, .0006},
                     Expected{"kitti_odometry_00/velodyne/000000.bin", true, 0, .0006},
                     Expected{"kitti_odometry_00/velodyne/000013.bin", true, 0, .0006},
+                    Expected{"nebula/hesai/xt16/1732848128093928016.pcd", false, 1287, .00001},
                     Expected{"velodyne/ndt_omp_hdl32/251370668.pcd", false, 0, .00001}));
 
 }  // namespace
