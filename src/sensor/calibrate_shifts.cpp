@@ -98,7 +98,7 @@ class Alignment {
       if (count(ring) > count(first)) first = ring;
     }
     // Against the fullest beam first, then against all others.
-    for (int round = 0; round < 2; ++round) {
+    for (int round = 0; round < 3; ++round) {
       fired_.assign(scans_.size(), std::vector<std::uint8_t>(slots_, 0));
       for (std::size_t ring = 0; ring < rings; ++ring) {
         if (round > 0 || ring == first) mark(ring, shifts[ring]);
@@ -115,7 +115,7 @@ class Alignment {
 
  private:
   static std::uint8_t threshold(std::size_t rings) {
-    return static_cast<std::uint8_t>(std::clamp<std::size_t>(rings / 10, 1, 6));
+    return static_cast<std::uint8_t>(std::clamp<std::size_t>(rings / 5, 1, 12));
   }
   std::size_t count(std::size_t ring) const {
     std::size_t sum = 0;
@@ -134,17 +134,17 @@ class Alignment {
       }
     }
   }
-  /// The smallest of the shifts that are about best.
+  /// The best shift; 0 where that does about as well, as when lasers fire at every position.
   std::int64_t best_shift(std::size_t ring) const {
     const std::size_t total = count(ring);
     if (total == 0) return 0;
-    std::vector<std::size_t> hits;
-    for (std::int64_t shift = -most_; shift <= most_; ++shift) hits.push_back(hits_at(ring, shift));
-    const std::size_t best = *std::max_element(hits.begin(), hits.end());
-    std::int64_t chosen = most_ + 1;
+    std::size_t best = hits_at(ring, 0) + total / 50;
+    std::int64_t chosen = 0;
     for (std::int64_t shift = -most_; shift <= most_; ++shift) {
-      const std::size_t h = hits[static_cast<std::size_t>(shift + most_)];
-      if (h + total / 50 >= best && std::abs(shift) < std::abs(chosen)) chosen = shift;
+      const std::size_t hits = hits_at(ring, shift);
+      if (hits <= best) continue;
+      best = hits;
+      chosen = shift;
     }
     return chosen;
   }

@@ -93,6 +93,11 @@ double max_range_of(std::string_view product) {
   return 120;
 }
 
+/// Packets with 15 bits for a range count 8 mm, all others 1 mm.
+double range_unit_of(std::string_view packet_profile) {
+  return packet_profile.find("RNG15") != std::string_view::npos ? 0.008 : 0.001;
+}
+
 std::string name_of(std::string_view product) {
   if (product.empty()) return "ouster";
   std::string name;
@@ -131,6 +136,8 @@ Result<SensorProfile> read_metadata(const json& root, const std::string& where) 
   profile.max_range_m = max_range_of(product);
   profile.beam_origin_radius_m =
       read_number(root, "lidar_origin_to_beam_origin_mm").value_or(0) / 1000;
+  profile.slots = columns;
+  profile.range_unit_m = range_unit_of(read_text(root, "udp_profile_lidar"));
   if (Status status = validate(profile); !status) {
     return invalid(where, status.error().message);
   }

@@ -40,6 +40,8 @@ TEST(OusterMetadata, ReadsBothLayoutsAlike) {
     EXPECT_EQ(sensor->name, "ouster-os-1-32-g");
     EXPECT_EQ(sensor->columns, 2048u);
     EXPECT_DOUBLE_EQ(sensor->beam_origin_radius_m, 0.015806);
+    EXPECT_EQ(sensor->slots, 2048u);
+    EXPECT_DOUBLE_EQ(sensor->range_unit_m, 0.001);
     ASSERT_EQ(sensor->rings.size(), 3u);
     EXPECT_DOUBLE_EQ(sensor->rings[0].elevation, 10.5 * kDegree);
     EXPECT_DOUBLE_EQ(sensor->rings[0].azimuth_offset, -2.5 * kDegree);
