@@ -10,7 +10,7 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 // A pass shrinks the error of s by |turn| / 2 pi and less; fast cars turn .2 rad in a scan.
 constexpr int kMostPasses = 12;
-constexpr double kSettled = 1e-12;  // of s: far below a micrometre anywhere
+constexpr double kSettled = 1e-11;  // of s: nanometres at most
 
 }  // namespace
 

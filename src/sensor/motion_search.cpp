@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -139,7 +138,7 @@ constexpr std::size_t kYawReturns = 3000;
 /// within a step are alike, for every yaw.
 double scan_yaw(const LatticeSample& sample, const BeamModel& model, const MotionTwist& motion) {
   struct Phasor {
-    std::complex<double> now, step;
+    double x, y, cosine, sine;  // where it is, and its turn at every step
   };
   std::vector<Phasor> phasors;
   const double slots = model.slots;
@@ -154,19 +153,23 @@ double scan_yaw(const LatticeSample& sample, const BeamModel& model, const Motio
     const double weight = std::exp(-blur * blur);
     if (weight < .1) continue;
     const double phase = (view->encoder + std::numbers::pi) * slots;
-    phasors.push_back({std::polar(weight, phase + kMostYaw * unmoved.s * slots),
-                       std::polar(1.0, -pace * unmoved.s * slots)});
+    const double start = phase + kMostYaw * unmoved.s * slots, turn = -pace * unmoved.s * slots;
+    phasors.push_back(
+        {weight * std::cos(start), weight * std::sin(start), std::cos(turn), std::sin(turn)});
   }
   double best = -1, best_rate = 0;
   const int steps = static_cast<int>(2 * kMostYaw / pace);
   for (int k = 0; k <= steps; ++k) {
-    std::complex<double> sum = 0;
+    double x = 0, y = 0;
     for (Phasor& phasor : phasors) {
-      sum += phasor.now;
-      phasor.now *= phasor.step;
+      x += phasor.x;
+      y += phasor.y;
+      const double turned = phasor.x * phasor.cosine - phasor.y * phasor.sine;
+      phasor.y = phasor.x * phasor.sine + phasor.y * phasor.cosine;
+      phasor.x = turned;
     }
-    if (std::norm(sum) > best) {
-      best = std::norm(sum);
+    if (x * x + y * y > best) {
+      best = x * x + y * y;
       best_rate = -kMostYaw + pace * k;
     }
   }
@@ -223,19 +226,20 @@ MotionTwist search_motion(const LatticeSample& sample, const BeamModel& model,
   const bool rich = freedom == MotionFreedom::quadratic;
   MotionTwist motion;
   // Elevations say all but the yaw. Scales shrink as the residuals do; few returns do at first.
-  const std::size_t coarse = std::max<std::size_t>(1, sample.points.size() / 4000);
-  const auto fit = [&](std::span<const int> free, double scale, bool across, std::size_t stride,
+  const auto fit = [&](std::span<const int> free, double scale, bool across, std::size_t returns,
                        int steps) {
+    const std::size_t stride = std::max<std::size_t>(1, sample.points.size() / returns);
     for (int i = 0; i < steps; ++i) improve(motion, sample, model, {free, scale, across, stride});
   };
   const std::span<const int> first = rich ? std::span<const int>(kRigidButYaw) : kAllButYaw;
-  for (const double scale : {.3, .1, .05, .02}) fit(first, scale, false, coarse, 4);
+  for (const double scale : {.3, .1, .05, .02}) fit(first, scale, false, 4000, 4);
   const std::span<const int> second = rich ? std::span<const int>(kQuadraticButYaw) : kAllButYaw;
-  for (const double scale : {.01, .003}) fit(second, scale, false, 1, 3);
+  for (const double scale : {.01, .003}) fit(second, scale, false, 8000, 3);
   motion.turn.z = scan_yaw(sample, model, motion);
   const std::span<const int> last = rich ? std::span<const int>(kQuadratic) : kTwist;
-  for (const double scale : {.01, .003}) fit(last, scale, true, coarse, 3);
-  for (const double scale : {.003, .001, .001}) fit(last, scale, true, 1, 1);
+  for (const double scale : {.01, .003}) fit(last, scale, true, 4000, 3);
+  fit(last, .002, true, 8000, 1);
+  fit(last, .001, true, sample.points.size(), 1);
   return motion;
 }
 
