@@ -19,7 +19,7 @@ namespace curlidar {
 namespace {
 
 bool is_compact_type(ChunkType type) {
-  return type >= ChunkType::compact_parameters && type <= ChunkType::compact_residual;
+  return type >= ChunkType::compact_parameters && type <= ChunkType::compact_rays;
 }
 
 compact::ScanChunks scan_chunks(const PartialContainer& container) {

@@ -99,7 +99,7 @@ Status check_frozen_beams(const RowTable& table) {
                                      [&](const Part& part) { return rays.*part.shift == 0; });
   if (!no_shifts || frozen->slots != rays.slots || frozen->elevation != table.elevation ||
       frozen->rays != rays.rays ||
-      (rays.range_unit_q32 != 0 && rays.range_unit_q32 != frozen->range_unit_q32)) {
+      (rays.range_unit_q48 != 0 && rays.range_unit_q48 != frozen->range_unit_q48)) {
     return invalid(fmt::format("the rays are not those of beam table {}", rays.table));
   }
   return {};
@@ -221,13 +221,13 @@ bool code_motion(Coder& coder, std::size_t parts, RayTable& rays) {
 }
 
 bool is_range_unit(std::uint64_t unit) {
-  return unit >= kLeastLattice && unit <= kMostLattice;
+  return unit >= kLeastRangeUnit && unit <= kMostRangeUnit;
 }
 
 std::uint32_t flags_of(const RayTable& rays) {
   const bool full = has_full_motion(rays.motion);
   return (rays.table != 0 ? kFrozen : 0) | (!rays.motion.none() ? kMoved : 0) |
-         (full ? kFullMotion : 0) | (rays.range_unit_q32 != 0 ? kHasUnit : 0);
+         (full ? kFullMotion : 0) | (rays.range_unit_q48 != 0 ? kHasUnit : 0);
 }
 
 /// Takes the beam table that the chunk names.
@@ -244,8 +244,8 @@ Status read_frozen_front(const ScanChunkView& chunk, ByteReader& reader, std::ui
                       fmt::format("a beam table of {} rows for {}", rays.rays.size(), rows));
   }
   if ((flags & kHasUnit) == 0) return {};
-  rays.range_unit_q32 = beam_table(rays.table)->range_unit_q32;
-  if (rays.range_unit_q32 != 0) return {};
+  rays.range_unit_q48 = beam_table(rays.table)->range_unit_q48;
+  if (rays.range_unit_q48 != 0) return {};
   return scan_error(ErrorCode::corrupt, chunk.part, chunk.offset,
                     "the beam table has no range unit");
 }
@@ -260,8 +260,8 @@ Status read_inline_front(const ScanChunkView& chunk, ByteReader& reader, std::ui
   }
   rays.slots = static_cast<std::uint32_t>(slots);
   if ((flags & kHasUnit) == 0) return {};
-  rays.range_unit_q32 = reader.read_varint();
-  if (is_range_unit(rays.range_unit_q32)) return {};
+  rays.range_unit_q48 = reader.read_varint();
+  if (is_range_unit(rays.range_unit_q48)) return {};
   return scan_error(ErrorCode::corrupt, chunk.part, chunk.offset,
                     "the range unit is missing or out of range");
 }
@@ -280,9 +280,9 @@ Status check_rays(const RowTable& table, std::uint32_t rows, std::uint32_t colum
   if (table.turn_columns != columns || table.first_column != 0) {
     return invalid("the columns of rays are all the firings of a turn");
   }
-  if (rays.range_unit_q32 != 0 && !is_range_unit(rays.range_unit_q32)) {
+  if (rays.range_unit_q48 != 0 && !is_range_unit(rays.range_unit_q48)) {
     return invalid(
-        fmt::format("a range unit of {} / 2^32 m; 2^16..2^40 are possible", rays.range_unit_q32));
+        fmt::format("a range unit of {} / 2^48 m; 2^32..2^56 are possible", rays.range_unit_q48));
   }
   CURLIDAR_TRY(check_firings(rays, columns));
   CURLIDAR_TRY(check_motion(rays));
@@ -309,7 +309,7 @@ std::vector<std::byte> write_rays(const RowTable& table) {
   ByteWriter writer;
   writer.write(static_cast<std::uint8_t>(flags));
   writer.write_varint(rays.table != 0 ? rays.table : rays.slots);
-  if (rays.table == 0 && rays.range_unit_q32 != 0) writer.write_varint(rays.range_unit_q32);
+  if (rays.table == 0 && rays.range_unit_q48 != 0) writer.write_varint(rays.range_unit_q48);
   RangeEncoder encoder;
   if (rays.table == 0) write_beams(encoder, table);
   write_firings(encoder, rays.firings, rays.slots);

@@ -51,11 +51,10 @@ std::int64_t along_ray(const Ray& ray, std::int64_t range) {
 
 }  // namespace
 
-std::int64_t exact_range(std::int32_t range, std::uint64_t unit_q32) {
-  const std::int64_t exact = std::int64_t{range} * 65536;
-  if (unit_q32 == 0) return exact;
-  const auto unit = static_cast<std::int64_t>(unit_q32);
-  return div_round(exact, unit) * unit;
+std::int64_t exact_range(std::int32_t range, std::uint64_t unit_q48) {
+  if (unit_q48 == 0) return std::int64_t{range} * 65536;
+  const auto unit = static_cast<std::int64_t>(unit_q48);
+  return shift_right_round(div_round(std::int64_t{range} << 32, unit) * unit, 16);
 }
 
 FixedPoint point_on_ray(const Ray& ray, const SinCos& up, std::uint32_t azimuth,
@@ -125,7 +124,7 @@ FixedPoint RayPoints::fixed(std::uint32_t row, std::uint32_t column, std::int32_
   const Ray& ray = rays_.rays[row];
   const SinCos& up = elevations_[row];
   const std::uint32_t azimuth = rays_.azimuth_of(row, column);
-  const std::int64_t exact = exact_range(range, rays_.range_unit_q32);
+  const std::int64_t exact = exact_range(range, rays_.range_unit_q48);
   const FixedPoint point = point_on_ray(ray, up, azimuth, exact);
   if (!moves_) return point;
   return moved(point, azimuth_on_ray(ray, up, azimuth, exact), rays_.motion);

@@ -13,9 +13,9 @@ namespace curlidar::compact {
 /// No coordinate is further out, in Q36 metres: 65 km. Doubles hold all integers up to it.
 inline constexpr std::int64_t kFarthestQ36 = std::int64_t{1} << 52;
 
-/// A range of 1..2^30 Q16 metres in 2^-32 m: 2^16 times it, or, if there is a unit, the nearest
-/// multiple of that.
-std::int64_t exact_range(std::int32_t range, std::uint64_t unit_q32);
+/// A range of 1..2^30 Q16 metres in 2^-32 m: 2^16 times it or, if there is a unit (2^-48 m), the
+/// multiple nearest to it: round(round(2^32 range / unit) unit / 2^16).
+std::int64_t exact_range(std::int32_t range, std::uint64_t unit_q48);
 
 /// The point at a range (2^-32 m, at most 2^47) along a ray at azimuth a and with the elevation
 /// `up`, before any motion. With t = range + range_phase 2^16, directions d = round(cos e cos a /

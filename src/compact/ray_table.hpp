@@ -48,8 +48,8 @@ struct RayTable {
   std::vector<Ray> rays;  ///< of each row
   Motion motion;
 
-  /// If not 0, ranges are rounded to multiples of so many 2^-32 m before they become points.
-  std::uint64_t range_unit_q32 = 0;
+  /// If not 0, ranges are rounded to multiples of so many 2^-48 m before they become points.
+  std::uint64_t range_unit_q48 = 0;
 
   /// Which frozen table (ray_tables.hpp) slots, elevations, rays and, if any, range unit are; 0 =
   /// none: then they are written out, angles and lengths of rays in units of 2^(their shifts).
@@ -83,5 +83,8 @@ struct RayTable {
 
 /// Most encoder positions of a turn, so that firings are numbered in 22 bits.
 inline constexpr std::uint32_t kMaxSlots = 1u << 22;
+/// Of range_unit_q48: 15 um .. 256 m.
+inline constexpr std::uint64_t kLeastRangeUnit = std::uint64_t{1} << 32;
+inline constexpr std::uint64_t kMostRangeUnit = std::uint64_t{1} << 56;
 
 }  // namespace curlidar::compact

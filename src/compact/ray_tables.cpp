@@ -52,7 +52,7 @@ BeamTable parse(const EmbeddedText& file) {
   table.name = file.name;
   table.number = numbers.next<std::uint32_t>().value_or(0);
   table.slots = numbers.next<std::uint32_t>().value_or(0);
-  table.range_unit_q32 = numbers.next<std::uint64_t>().value_or(0);
+  table.range_unit_q48 = numbers.next<std::uint64_t>().value_or(0);
   while (const auto elevation = numbers.next<std::int32_t>()) {
     table.elevation.push_back(*elevation);
     Ray ray;

@@ -15,7 +15,7 @@ struct BeamTable {
   std::string_view name;     ///< of its file
   std::uint32_t number = 0;  ///< by which files refer to it, from 1 on
   std::uint32_t slots = 0;
-  std::uint64_t range_unit_q32 = 0;     ///< ranges are multiples of it, 2^-32 m; 0 = none known
+  std::uint64_t range_unit_q48 = 0;     ///< ranges are multiples of it, 2^-48 m; 0 = none known
   std::vector<std::int32_t> elevation;  ///< of each row, binary angles
   std::vector<Ray> rays;                ///< of each row
 };

@@ -75,7 +75,7 @@ RowTable inline_table() {
   RayTable& rays = table.rays.emplace();
   rays.slots = 36000;
   rays.firings = turning(36000, 16.67, 2);
-  rays.range_unit_q32 = 8589935;
+  rays.range_unit_q48 = 562949953421;
   table.turn_columns = static_cast<std::uint32_t>(rays.firings.size());
   table.elevation_shift = 8;
   rays.azimuth_shift = 10;
@@ -97,7 +97,7 @@ RowTable frozen_table() {
   RowTable table;
   EXPECT_TRUE(use_beam_table(1, table));
   table.rays->firings = turning(4000, 1.857, 0);
-  table.rays->range_unit_q32 = beam_table(1u)->range_unit_q32;
+  table.rays->range_unit_q48 = beam_table(1u)->range_unit_q48;
   table.turn_columns = static_cast<std::uint32_t>(table.rays->firings.size());
   return table;
 }
@@ -128,7 +128,7 @@ TEST(RayChunk, ComesBack) {
       for (const bool unit : {false, true}) {
         RowTable table = frozen ? frozen_table() : inline_table();
         if (motion > 0) set_motion(*table.rays, motion == 2);
-        if (!unit) table.rays->range_unit_q32 = 0;
+        if (!unit) table.rays->range_unit_q48 = 0;
         const auto checked = check_rays(table, rows_of(table), table.turn_columns);
         ASSERT_TRUE(checked) << checked.error().message;
         RowTable found;
@@ -177,7 +177,7 @@ TEST(RayChunk, RefusesWhatItCannotHold) {
   EXPECT_TRUE(refused([](RowTable&, RayTable& r) { r.turn_shift = 1; }));
   EXPECT_TRUE(refused([](RowTable&, RayTable& r) { r.table = 1; }));
   EXPECT_TRUE(refused([](RowTable&, RayTable& r) { r.table = 1000; }));
-  EXPECT_TRUE(refused([](RowTable&, RayTable& r) { r.range_unit_q32 = 1; }));
+  EXPECT_TRUE(refused([](RowTable&, RayTable& r) { r.range_unit_q48 = 1; }));
 }
 
 TEST(RayChunk, DamagedBytesAreAnErrorOrAValidTable) {

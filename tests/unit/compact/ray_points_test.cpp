@@ -178,9 +178,9 @@ TEST(RayPoints, TableGivesThePointOfRowAndFiring) {
 }
 
 TEST(RayPoints, RangesAreRoundedToTheirUnit) {
-  constexpr std::uint64_t unit = 8589935;  // 2 mm
-  for (const std::int32_t k : {0, 1, 2, 333, 59999}) {
-    const auto exact = static_cast<std::int64_t>(k * unit);
+  constexpr std::uint64_t unit = 562949953421;  // 2 mm
+  for (const std::int32_t k : {1, 2, 333, 59999}) {
+    const auto exact = static_cast<std::int64_t>(k * unit + 32768) >> 16;
     const auto range = static_cast<std::int32_t>(shift_right_round(exact, 16));
     EXPECT_EQ(exact_range(range, unit), exact);
     EXPECT_EQ(exact_range(range, 0), range * std::int64_t{65536});

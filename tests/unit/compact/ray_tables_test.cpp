@@ -29,7 +29,7 @@ TEST(RayTables, AreNumberedFromOneAndFitTheFormat) {
       EXPECT_LE(std::abs(ray.height), kMaxRowOffset);
       EXPECT_LE(std::abs(ray.lateral), kMaxRowOffset);
       // A phase is what is left of a range unit.
-      EXPECT_LE(std::abs(ray.range_phase), std::int64_t(table.range_unit_q32 >> 17) + 1);
+      EXPECT_LE(std::abs(ray.range_phase), std::int64_t(table.range_unit_q48 >> 33) + 1);
     }
   }
   EXPECT_EQ(beam_table(0u), nullptr);
@@ -42,7 +42,7 @@ TEST(RayTables, KittisSensorIsAsPublished) {
   ASSERT_NE(table, nullptr);
   EXPECT_EQ(table->number, 1u);  // frozen
   EXPECT_EQ(table->slots, 4000u);
-  EXPECT_EQ(table->range_unit_q32, static_cast<std::uint64_t>(std::llround(.002 * 4294967296.0)));
+  EXPECT_EQ(table->range_unit_q48, 562949953421u);
   ASSERT_EQ(table->rays.size(), 64u);
   const auto degrees = [](std::int32_t angle) { return angle / 4294967296.0 * 360; };
   EXPECT_NEAR(degrees(table->elevation.front()), 1.94, .01);

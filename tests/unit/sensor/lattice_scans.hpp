@@ -20,7 +20,7 @@ inline BeamModel frozen_table(const std::string& name) {
   BeamModel model;
   model.table = name;
   model.slots = table->slots;
-  model.range_unit_m = static_cast<double>(table->range_unit_q32) * 0x1p-32;
+  model.range_unit_m = static_cast<double>(table->range_unit_q48) * 0x1p-48;
   const double radians = 2 * std::numbers::pi * 0x1p-32;
   for (std::size_t k = 0; k < table->rays.size(); ++k) {
     const compact::Ray& ray = table->rays[k];

@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Fits a frozen beam table (docs/format/beams/*.txt) to scans that are not motion compensated.
+"""Writes a frozen beam table (docs/format/beams/*.txt): fitted to scans that are not motion
+compensated, or, without scans, with the very numbers of a profile, where drivers use these.
 
-    tools/fit_beam_table.py --profile profiles/hdl64e-kitti.toml --number 1 --slots 4000 \\
-        --unit-mm 2 --lateral-mm 26 --output docs/format/beams/hdl64e-kitti.txt SCAN.bin SCAN.pcd ...
+    tools/make_beam_table.py --profile profiles/hdl64e-kitti.toml --number 1 --slots 4000 \\
+        --unit-mm 2 --lateral-mm 26 --output docs/format/beams/hdl64e-kitti.txt SCAN ...
 
-The profile gives the first guess of elevations, heights and lateral offsets, good to a fraction of a
-millimetre in 10 m. Scans are KITTI's .bin or binary .pcd of four floats a point, ring by ring from
+The profile gives the first guess of elevations, heights and lateral offsets, good to a fraction of
+a millimetre in 10 m. Scans are KITTI's .bin or binary .pcd of four floats a point, ring by ring from
 the top, each ring beginning at azimuth 0. Coordinates are rounded to a millimetre, so that one scan
 determines a beam to some micrometres. Needs NumPy.
 
-What is fitted for each ring: elevation, height, azimuth offset, range phase; and the lateral offset
+What is fitted of each ring: elevation, height, azimuth offset, range phase; and the lateral offset
 unless --lateral-mm says that rings have this, turn about to the right and left.
 """
 import argparse
@@ -40,6 +41,8 @@ def rings_of(points):
 
 def profile_list(text, key):
     found = re.search(rf"^{key} = \[(.*?)\]", text, re.S | re.M)
+    if not found:
+        return np.zeros(0)
     return np.array([float(x) for x in found.group(1).split(",") if x.strip()])
 
 
@@ -48,10 +51,11 @@ class Beams:
 
     def __init__(self, text, pitch, unit):
         self.pitch, self.unit = pitch, unit
-        known = np.c_[np.radians(profile_list(text, "elevation_deg")),
-                      profile_list(text, "vertical_offset_m"),
-                      profile_list(text, "horizontal_offset_m")]
-        self.values = np.c_[known, np.zeros((len(known), 2))]
+        elevation = np.radians(profile_list(text, "elevation_deg"))
+        none = np.zeros(len(elevation))
+        columns = [profile_list(text, key) for key in ("vertical_offset_m", "horizontal_offset_m")]
+        columns += [np.radians(profile_list(text, "azimuth_offset_deg")), none]
+        self.values = np.stack([elevation] + [c if len(c) else none for c in columns], 1)
 
     def along(self, points, ring):
         """Azimuth and range of the beam that saw each point."""
@@ -148,31 +152,38 @@ def main():
     parser.add_argument("--unit-mm", type=float, required=True)
     parser.add_argument("--lateral-mm", type=float)
     parser.add_argument("--output", required=True)
-    parser.add_argument("scans", nargs="+")
+    parser.add_argument("scans", nargs="*")
     options = parser.parse_args()
 
     pitch, unit = 2 * math.pi / options.slots, options.unit_mm / 1000
     scans = [(points, rings_of(points)) for points in map(read_scan, options.scans)]
     beams = Beams(Path(options.profile).read_text(), pitch, unit)
-    if options.lateral_mm:
-        beams.values[:, 2] = np.copysign(options.lateral_mm / 1000, beams.values[:, 2])
-    beams.start(*scans[0])
-    for step in range(6):
-        beams.refine(scans, options.lateral_mm is not None, .002 if step < 3 else .0012)
-    report(beams, scans, options.scans)
+    shift = np.zeros(len(beams.values), int)
+    if scans:
+        if options.lateral_mm:
+            beams.values[:, 2] = np.copysign(options.lateral_mm / 1000, beams.values[:, 2])
+        beams.start(*scans[0])
+        for step in range(6):
+            beams.refine(scans, options.lateral_mm is not None, .002 if step < 3 else .0012)
+        report(beams, scans, options.scans)
+        shift = shifts_of(beams, scans, options.slots)
+    Path(options.output).write_text(table_text(options, beams, shift))
 
-    shift = shifts_of(beams, scans, options.slots)
+
+def table_text(options, beams, shift):
+    """The file: angles in 2^-32 of a turn, lengths in 2^-16 m."""
     turn = 2**32
-    lines = [f"# Beams of {Path(options.output).stem}, fitted by tools/fit_beam_table.py. Part of the format: never",
-             "# changed. Number of the table, encoder positions of a turn, range unit in 2^-32 m;",
-             "# then for each ring, from the top: elevation and azimuth offset (2^-32 of a turn), height,",
-             "# lateral offset and range phase (2^-16 m).",
-             f"{options.number} {options.slots} {round(unit * turn)}"]
+    name = Path(options.output).stem
+    lines = [f"# Beams of {name}, by tools/make_beam_table.py. Part of the format: never changed.",
+             "# Number of the table, encoder positions of a turn, range unit in 2^-48 m;",
+             "# then for each ring, from the top: elevation and azimuth offset (2^-32 of a turn),",
+             "# height, lateral offset and range phase (2^-16 m).",
+             f"{options.number} {options.slots} {round(options.unit_mm * 2**48 / 1000)}"]
     for (elevation, height, lateral, offset, phase), m in zip(beams.values, shift):
-        angles = [elevation, offset - m * pitch]
+        angles = [elevation, offset - m * beams.pitch]
         lines.append(" ".join([str(round(a / 2 / math.pi * turn)) for a in angles] +
                               [str(round(x * 65536)) for x in (height, lateral, phase)]))
-    Path(options.output).write_text("\n".join(lines) + "\n")
+    return "\n".join(lines) + "\n"
 
 
 if __name__ == "__main__":
