@@ -4,11 +4,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "curlidar/cloud.hpp"
 #include "curlidar/result.hpp"
 #include "format/container.hpp"
+#include "format/payload.hpp"
 
 namespace curlidar {
 
@@ -25,5 +28,20 @@ Result<std::vector<std::byte>> write_attributes(const std::vector<Attribute>& at
 /// together.
 Result<std::vector<Attribute>> read_attributes(const Chunk& chunk, std::uint64_t returns,
                                                std::uint64_t max_bytes);
+
+/// Appends the values of an attribute to a payload.
+using WriteValues = std::function<void(ByteWriter&, const Attribute&)>;
+/// Sets the values of an attribute, of the type that its empty ones have.
+using ReadValues = std::function<Status(PayloadReader&, Attribute&)>;
+
+/// A list of attributes of `count` points each, their values written by `write_values`. Errors as
+/// write_attributes.
+Result<std::vector<std::byte>> write_attribute_list(const std::vector<Attribute>& attributes,
+                                                    std::size_t count,
+                                                    const WriteValues& write_values);
+/// The same list, the end of the payload. Errors as read_attributes, and those of `read_values`.
+Result<std::vector<Attribute>> read_attribute_list(PayloadReader& reader, std::uint64_t count,
+                                                   std::uint64_t max_bytes,
+                                                   const ReadValues& read_values);
 
 }  // namespace curlidar

@@ -21,11 +21,11 @@ std::uint64_t code_plain(Coder& coder, std::uint64_t value, int bits) {
   return found;
 }
 
-/// Numbers of up to 63 bits by their size: how many bits, in unary, then those below the highest;
+/// Numbers of up to 64 bits by their size: how many bits, in unary, then those below the highest;
 /// the first two of them are learnt, the others are plain.
 class SizeModels {
  public:
-  static constexpr std::size_t kMaxBits = 63;
+  static constexpr std::size_t kMaxBits = 64;
 
   template <class Coder>
   std::uint64_t code(Coder& coder, std::uint64_t value) {
@@ -53,18 +53,16 @@ class SizeModels {
   std::array<std::array<BitModel, 2>, kMaxBits + 1> third_;
 };
 
-/// Numbers with a sign, of magnitude below 2^62.
+/// Numbers with a sign: magnitude, then the sign of those that are not 0.
 class SignedModels {
  public:
   template <class Coder>
   std::int64_t code(Coder& coder, std::int64_t value) {
-    const std::uint64_t size =
-        size_.code(coder, value < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(value)
-                                    : static_cast<std::uint64_t>(value));
+    const auto bits = static_cast<std::uint64_t>(value);
+    const std::uint64_t size = size_.code(coder, value < 0 ? 0 - bits : bits);
     if (size == 0) return 0;
     const bool negative = code_bit(coder, sign_, 60, value < 0);
-    const auto magnitude = static_cast<std::int64_t>(size);
-    return negative ? -magnitude : magnitude;
+    return static_cast<std::int64_t>(negative ? 0 - size : size);
   }
 
  private:
