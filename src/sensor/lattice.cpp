@@ -111,29 +111,30 @@ class Sightings {
   /// may have seen it does. Beside the seam of a compensated scan a return may come from either
   /// end.
   void add(std::uint32_t slot, const Vec3& moved, std::uint16_t ring) {
-    if (found_.motion.none()) return add_unmoved(slot, moved, ring);
+    if (found_.motion.none()) return add_unmoved(slot, {moved, 0}, ring);
     for (const double turns : {0.0, 1.0, -1.0}) {
       const Unmoved unmoved = undo_motion(found_.motion, moved, turns);
-      if (unmoved.s >= -.5 && unmoved.s < .5) add_unmoved(slot, unmoved.point, ring);
+      if (std::abs(unmoved.s) < .5 + kSlack) add_unmoved(slot, unmoved, ring);
       if (turns == 0 && std::abs(unmoved.s) < .5 - kSeam) return;
     }
   }
   const std::vector<Sighting>& list() const { return list_; }
 
  private:
-  static constexpr double kSeam = .1;  ///< of a turn: more than any motion shifts the seam
+  static constexpr double kSeam = .1;     ///< of a turn: more than any motion shifts the seam
+  static constexpr double kSlack = 2e-4;  ///< of a turn: what rounding may do to an azimuth
 
-  void add_unmoved(std::uint32_t slot, const Vec3& p, std::uint16_t ring) {
+  void add_unmoved(std::uint32_t slot, const Unmoved& p, std::uint16_t ring) {
     if (ring < found_.model->beams.size() && add_if_near(slot, p, ring)) return;
     for (std::size_t k = 0; k < found_.model->beams.size(); ++k) {
       if (k != ring) add_if_near(slot, p, static_cast<std::uint16_t>(k));
     }
   }
-  bool add_if_near(std::uint32_t slot, const Vec3& p, std::uint16_t ring) {
-    const auto view = view_along(found_.model->beams[ring], p);
-    if (!view || !(view->range > 0) || std::abs(view->up_m) > reach_m_) return false;
+  bool add_if_near(std::uint32_t slot, const Unmoved& p, std::uint16_t ring) {
+    const auto view = view_along(found_.model->beams[ring], p.point);
+    if (!view || !(view->range > 0) || !(std::abs(view->up_m) <= reach_m_)) return false;
     const double encoder = (view->encoder + std::numbers::pi) / kTurn * found_.model->slots;
-    list_.push_back({slot, ring, encoder, view->up_m, view->distance_m, view->range});
+    list_.push_back({slot, ring, encoder, view->up_m, view->distance_m, view->range, p.s});
     return true;
   }
 

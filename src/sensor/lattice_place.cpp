@@ -75,8 +75,19 @@ struct Candidate {
   int grade() const { return static_cast<int>(residual_m / .00025); }
 };
 
+/// Whether the place is on the same side of the seam as the azimuth for which the motion of a
+/// return was undone; else the motion would take the place's point elsewhere.
+bool same_side(const Sighting& sighting, const BeamModel& model, std::uint32_t position) {
+  constexpr double kClear = .499;  // of a turn
+  if (std::abs(sighting.s) < kClear) return true;
+  const double azimuth =
+      azimuth_of(lattice_point(model, sighting.ring, position, sighting.range_m));
+  return (azimuth < 0) == (sighting.s < 0);
+}
+
 /// Every firing that a return may belong to.
 std::vector<Candidate> find_candidates(const std::vector<Sighting>& sightings,
+                                       const BeamModel& model,
                                        const std::vector<std::uint32_t>& firing_at,
                                        double reach_m) {
   const auto slots = static_cast<std::uint32_t>(firing_at.size());
@@ -90,7 +101,7 @@ std::vector<Candidate> find_candidates(const std::vector<Sighting>& sightings,
     const auto last = static_cast<std::int64_t>(std::floor(x + reach));
     for (auto p = static_cast<std::int64_t>(std::ceil(x - reach)); p <= last; ++p) {
       const std::uint32_t firing = firing_at[wrap(p, slots)];
-      if (firing == kNothing) continue;
+      if (firing == kNothing || !same_side(sighting, model, wrap(p, slots))) continue;
       const double across = (x - static_cast<double>(p)) * metres;
       const double residual = std::hypot(across, sighting.up_m);
       if (residual <= reach_m) out.push_back({i, firing, across, residual});
@@ -134,7 +145,7 @@ Placement place_returns(const std::vector<Sighting>& sightings, const BeamModel&
   for (const Sighting& sighting : sightings) last_slot = std::max(last_slot, sighting.slot);
   std::vector<std::uint8_t> placed(std::size_t{last_slot} + 1, 0);
   std::vector<std::uint8_t> taken(placement.firings.size() * model.beams.size(), 0);
-  const std::vector<Candidate> candidates = find_candidates(sightings, firing_at, reach_m);
+  const std::vector<Candidate> candidates = find_candidates(sightings, model, firing_at, reach_m);
   for (const Candidate& candidate : candidates) {
     const Sighting& sighting = sightings[candidate.sighting];
     auto& cell = taken[sighting.ring * placement.firings.size() + candidate.firing];

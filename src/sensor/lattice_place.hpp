@@ -17,6 +17,7 @@ struct Sighting {
   double up_m = 0;        ///< from the cone of the beam
   double distance_m = 0;  ///< metres a radian of encoder
   double range_m = 0;
+  double s = 0;  ///< of a turn, at which the motion was undone; [-0.5, 0.5] or hardly more
 };
 
 struct Placement {

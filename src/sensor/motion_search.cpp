@@ -83,6 +83,9 @@ struct Step {
   std::size_t stride = 1;     ///< use every so many returns of the sample
 };
 
+/// Metres or radians: no vehicle's motion; the returns do not determine it.
+constexpr double kMostChange = 50;
+
 /// One Gauss-Newton step with weights that fall off with the residual.
 void improve(MotionTwist& motion, const LatticeSample& sample, const BeamModel& model,
              const Step& step) {
@@ -116,7 +119,7 @@ void improve(MotionTwist& motion, const LatticeSample& sample, const BeamModel& 
     small(r, r) += 1e-12;
   }
   const Eigen::VectorXd change = small.selfadjointView<Eigen::Lower>().ldlt().solve(small_right);
-  if (!change.allFinite()) return;
+  if (!change.allFinite() || change.cwiseAbs().maxCoeff() > kMostChange) return;
   for (Eigen::Index r = 0; r < n; ++r) {
     unknown(motion, step.free[static_cast<std::size_t>(r)]) += change(r);
   }

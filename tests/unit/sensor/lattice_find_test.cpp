@@ -73,6 +73,7 @@ TEST(LatticeFind, UndoesMotionOfAnySpeed) {
                                     driving(3, -.1), driving(-.5, .3)}) {
     LatticeScanOptions options;
     options.motion = motion;
+    options.step = 5;
     const LatticeScan scan = make_lattice_scan(model, options);
     const LatticeFit fit = find(scan, model);
     EXPECT_NEAR(fit.motion.turn.z, motion.turn.z, 1e-5);
@@ -139,8 +140,10 @@ TEST(LatticeFind, LeavesReturnsOffTheLatticeLoose) {
   add({.001, 0, 0}, 3);  // inside the beams' origins
   add({1, 2, 40}, 0);    // where no beam looks
   add({1e30, 1e30, 0}, 0);
+  add({1e200, -1e200, 1e200}, 2);
+  add({std::numeric_limits<double>::max(), 0, 0}, 1);
   const LatticeFit fit = find(scan, model);
-  EXPECT_EQ(fit.returns, regular + 4);
+  EXPECT_EQ(fit.returns, regular + 6);
   EXPECT_EQ(fit.placed, regular);
   EXPECT_EQ(fit.sharing, 1u);
   EXPECT_NE(fit.firing_of_point[0], kNoFiring) << "the first of two has the place";
@@ -194,6 +197,25 @@ TEST(LatticeFind, FindsNoneInPointsAtRandom) {
   const auto none = find_lattice(scan.cloud, scan.rings, std::vector{model});
   ASSERT_TRUE(none);
   EXPECT_FALSE(*none);
+}
+
+TEST(LatticeFind, IsCalmAboutReturnsThatSayNothing) {
+  // One point over and over; a line; points on the axis; points far beyond any range.
+  const BeamModel model = two_blocks();
+  for (int kind = 0; kind < 4; ++kind) {
+    LatticeScan scan = make_lattice_scan(model, {});
+    double along = 0;
+    for (Vec3& p : scan.cloud.positions) {
+      along += .001;
+      p = kind == 0   ? Vec3{4, 5, -1}
+          : kind == 1 ? Vec3{along, 2, 0}
+          : kind == 2 ? Vec3{0, 0, along}
+                      : Vec3{1e7 + along, -1e150, 1e300};
+    }
+    const auto found = find_lattice(scan.cloud, scan.rings, std::vector{model});
+    ASSERT_TRUE(found);
+    EXPECT_FALSE(*found) << kind;
+  }
 }
 
 TEST(LatticeFind, IsCalmAboutEmptyAndMismatchedInput) {
