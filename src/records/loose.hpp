@@ -16,7 +16,7 @@ namespace curlidar {
 /// How exactly points come back. Both zero: bit for bit.
 struct LooseSettings {
   double max_error_m = 0;  ///< no decoded point lies farther than this from its own, in 3D
-  double step_m = 0;       ///< instead: the volume per grid point is that of a cube of this side
+  double step_m = 0;  ///< instead: coordinates to the nearest multiple of this, no bound checked
 };
 
 /// A chunk's payload and what its decoder makes of it.
