@@ -17,6 +17,7 @@ Command add_compare(CLI::App& root);
 Command add_simulate(CLI::App& root);
 Command add_render(CLI::App& root);
 Command add_sensors(CLI::App& root);
+Command add_calibrate(CLI::App& root);
 Command add_demo(CLI::App& root);
 
 }  // namespace curlidar::app

@@ -54,6 +54,21 @@ Status check(std::span<const RingedScan> scans) {
   return {};
 }
 
+/// Further digits are noise; without them a beam that is said to look 15 degrees up does.
+void round_off(BeamModel& model) {
+  const auto angle = [](double radians) {
+    return radians_of(std::round(degrees_of(radians) * 1e6) / 1e6 + 0.0);
+  };
+  const auto length = [](double metres) { return std::round(metres * 1e7) / 1e7 + 0.0; };
+  for (Beam& beam : model.beams) {
+    beam.elevation = angle(beam.elevation);
+    beam.azimuth_offset = angle(beam.azimuth_offset);
+    beam.height_m = length(beam.height_m);
+    beam.lateral_m = length(beam.lateral_m);
+    beam.range_phase_m = length(beam.range_phase_m);
+  }
+}
+
 /// The state that the steps below hand on.
 class Calibrator {
  public:
@@ -160,6 +175,7 @@ class Calibrator {
     Calibration out;
     out.range_resultant = find_range_unit(samples_, model_);
     align_firings(all_, model_);
+    round_off(model_);
     std::swap(samples_[0], samples_[swapped_]);
     for (const ScanSample& sample : samples_) out.motions.push_back(sample.motion);
     out.model = std::move(model_);

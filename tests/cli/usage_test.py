@@ -7,7 +7,7 @@ import unittest
 from support import FILE, INPUT, USAGE, CommandTest
 
 COMMANDS = ["encode", "decode", "mesh", "upsample", "convert", "info", "project", "compare",
-            "simulate", "render", "sensors", "demo"]
+            "simulate", "render", "sensors", "calibrate", "demo"]
 
 
 class UsageTest(CommandTest):

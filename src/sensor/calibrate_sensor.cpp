@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/try.hpp"
+#include "curlidar/calibrate.hpp"
+#include "sensor/calibrate.hpp"
+
+namespace curlidar {
+namespace {
+
+/// The rings of a cloud: as the cloud itself tells them if their number is right.
+Result<Detection> rings_of(const Cloud& cloud, const std::optional<SensorProfile>& start) {
+  CURLIDAR_TRY_ASSIGN(found, detect_sensor(cloud));
+  if (!start) return found;
+  if (found.sensor.rings.size() != start->rings.size() || found.source == RingSource::uniform) {
+    return assign_rings(cloud, *start);
+  }
+  found.sensor = *start;
+  return found;
+}
+
+Error no_lattice(const char* why) {
+  return {
+      ErrorCode::unsupported,
+      fmt::format("no lattice of a sensor's own rays found: {}. encode uses uniform columns for "
+                  "such scans and needs no calibration",
+                  why)};
+}
+
+ScanOnLattice describe(const LatticeFit& fit) {
+  ScanOnLattice out;
+  out.returns = fit.returns;
+  out.placed = fit.placed;
+  out.firings = fit.firings.size();
+  out.share = fit.share;
+  const LatticeResiduals& r = fit.residuals;
+  out.across_median_m = r.across_median_m;
+  out.across_p95_m = r.across_p95_m;
+  out.up_median_m = r.up_median_m;
+  out.up_p95_m = r.up_p95_m;
+  out.range_median_m = r.range_median_m;
+  out.range_p95_m = r.range_p95_m;
+  out.compensated = !fit.motion.none();
+  out.turn = fit.motion.turn;
+  out.move = fit.motion.move;
+  out.notes = fit.notes;
+  return out;
+}
+
+}  // namespace
+
+Result<SensorCalibration> calibrate_sensor(std::span<const Cloud> clouds,
+                                           const SensorCalibrationSettings& settings) {
+  const auto report = [&](std::string_view stage, double fraction) {
+    if (settings.progress) settings.progress(stage, fraction);
+  };
+  std::vector<Detection> rings;
+  std::vector<RingedScan> scans;
+  report("rings", 0);
+  for (const Cloud& cloud : clouds) {
+    CURLIDAR_TRY_ASSIGN(found, rings_of(cloud, settings.start));
+    rings.push_back(std::move(found));
+  }
+  for (std::size_t i = 0; i < clouds.size(); ++i) scans.push_back({&clouds[i], &rings[i]});
+  CalibrateSettings inner;
+  inner.motion = settings.motion;
+  inner.progress = [&](std::string_view stage, double fraction) { report(stage, 0.7 * fraction); };
+  CURLIDAR_TRY_ASSIGN(calibration, calibrate(scans, inner));
+  if (!calibration) {
+    return no_lattice(rings.front().source == RingSource::uniform
+                          ? "the scan has no rings"
+                          : "the returns of its rings are not at the positions of any encoder, or "
+                            "not on cones");
+  }
+  SensorCalibration out;
+  out.ring_source = rings.front().source;
+  CURLIDAR_TRY_ASSIGN(sensor, profile_of(calibration->model, rings.front().sensor, settings.name));
+  sensor.description =
+      fmt::format("{}, calibrated from {} scan{}", rings.front().sensor.description, clouds.size(),
+                  clouds.size() == 1 ? "" : "s");
+  out.sensor = std::move(sensor);
+  LatticeSettings lattice;
+  lattice.motion = settings.motion;
+  for (std::size_t i = 0; i < clouds.size(); ++i) {
+    report("lattice", 0.7 + 0.3 * static_cast<double>(i) / static_cast<double>(clouds.size()));
+    CURLIDAR_TRY_ASSIGN(
+        fit, find_lattice(clouds[i], rings[i], std::span(&calibration->model, 1), lattice));
+    out.scans.push_back(fit ? describe(*fit) : ScanOnLattice{});
+    out.scans.back().returns = rings[i].returns;
+    out.sensor.min_range_m = std::min(out.sensor.min_range_m, rings[i].sensor.min_range_m);
+    out.sensor.max_range_m = std::max(out.sensor.max_range_m, rings[i].sensor.max_range_m);
+  }
+  const auto on_lattice = [](const ScanOnLattice& scan) { return scan.placed > 0; };
+  if (std::none_of(out.scans.begin(), out.scans.end(), on_lattice)) {
+    return no_lattice("too few of the returns lie on the one that fits best");
+  }
+  report("done", 1);
+  return out;
+}
+
+}  // namespace curlidar
