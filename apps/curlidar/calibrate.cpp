@@ -168,7 +168,15 @@ SensorCalibration calibrate_files(const Options& options) {
     if (!options.output.empty()) refuse_same_file(input, options.output);
     clouds.push_back(load_cloud(input, format));
   }
-  return need(calibrate_sensor(clouds, settings));
+  try {
+    return need(calibrate_sensor(clouds, settings));
+  } catch (const Failure& failure) {
+    const std::string& first = options.inputs.front();
+    throw Failure({ErrorCode::unsupported,
+                   fmt::format("{}{}: {}", first == "-" ? "standard input" : first,
+                               options.inputs.size() > 1 ? " and others" : "", failure.what())},
+                  failure.code());
+  }
 }
 
 int run(const Options& options) {

@@ -24,7 +24,7 @@ constexpr double kClearResultant = 0.6;
 /// With finer encoders the search for the yaw leaves lateral offsets out: it would take too long.
 constexpr std::uint32_t kMostSlotsForBoth = 8192;
 
-/// Returns of one beam: azimuth, 1 / distance, weight.
+/// Returns of one beam: azimuth from the encoder's position 0, 1 / distance, weight.
 struct Arc {
   std::vector<double> azimuth, inverse, weight;
   std::size_t size() const { return azimuth.size(); }
@@ -37,7 +37,7 @@ double weight_of(double distance) {
 
 void append(Arc& arc, const Vec3& p) {
   const double distance = std::hypot(p.x, p.y);
-  arc.azimuth.push_back(azimuth_of(p));
+  arc.azimuth.push_back(azimuth_of(p) + std::numbers::pi);
   arc.inverse.push_back(1 / distance);
   arc.weight.push_back(weight_of(distance));
 }
@@ -203,6 +203,18 @@ Encoder scan_yaws(std::uint32_t slots, const Score& score) {
   return best;
 }
 
+/// Offsets that are about the same belong on one side of half a pitch.
+void gather_offsets(BeamModel& model) {
+  std::complex<double> sum = 0;
+  for (const Beam& beam : model.beams) sum += std::polar(1.0, model.slots * beam.azimuth_offset);
+  if (std::abs(sum) < 0.5 * static_cast<double>(model.beams.size())) return;
+  const double middle = std::arg(sum) / model.slots;
+  for (Beam& beam : model.beams) {
+    beam.azimuth_offset =
+        middle + std::remainder(beam.azimuth_offset - middle, kTurn / model.slots);
+  }
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> slot_candidates(std::span<const std::uint32_t> hints) {
@@ -285,6 +297,7 @@ void start_azimuths(const ScanSample& sample, BeamModel& model) {
     model.beams[ring].lateral_m = found.lateral;
     model.beams[ring].azimuth_offset = found.offset;
   }
+  gather_offsets(model);
 }
 
 }  // namespace curlidar::calibration

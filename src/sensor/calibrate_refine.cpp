@@ -49,7 +49,7 @@ Residual residual_of(const BeamModel& model, std::size_t ring, const Vec3& p, bo
   if (!azimuth) return r;
   const double pitch = 2 * std::numbers::pi / model.slots;
   const double encoder = azimuth_of(p) - std::atan2(beam.lateral_m, u) - beam.azimuth_offset;
-  r.across = std::remainder(encoder, pitch) * distance;
+  r.across = std::remainder(encoder + std::numbers::pi, pitch) * distance;
   return r;
 }
 

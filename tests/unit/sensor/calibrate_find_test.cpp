@@ -204,6 +204,20 @@ TEST(Calibrate, TakesColumnsOfAnOrganisedCloudForFirings) {
   }
 }
 
+TEST(Calibrate, TakesAnOddNumberOfPositionsFromTheProfile) {
+  BeamModel truth = two_blocks(8, 2083);
+  for (Beam& beam : truth.beams) beam.azimuth_offset *= 2e-3;
+  LatticeScanOptions options;
+  options.step = 1;
+  LatticeScan scan = make_lattice_scan(truth, options);
+  scan.rings.source = RingSource::clustered;
+  scan.rings.sensor.columns = 2083;
+  const Calibration calibration = found({scan});
+  expect_beams(calibration.model, truth, 2e-4, 3e-5);
+  EXPECT_NEAR(calibration.model.beams[0].azimuth_offset, truth.beams[0].azimuth_offset, 3e-5);
+  expect_placed(scan, calibration.model, 2083);
+}
+
 TEST(Calibrate, KeepsBeamsWithoutReturns) {
   const BeamModel truth = two_blocks();
   LatticeScan scan = unknown(truth, {});
@@ -212,7 +226,7 @@ TEST(Calibrate, KeepsBeamsWithoutReturns) {
   }
   const Calibration calibration = found({scan});
   ASSERT_EQ(calibration.model.beams.size(), 16u);
-  EXPECT_DOUBLE_EQ(calibration.model.beams[5].elevation, scan.rings.sensor.rings[5].elevation);
+  EXPECT_NEAR(calibration.model.beams[5].elevation, scan.rings.sensor.rings[5].elevation, 1e-7);
   EXPECT_NEAR(calibration.model.beams[6].elevation, truth.beams[6].elevation, 5e-5);
 }
 
