@@ -23,7 +23,8 @@ SEEN_BESIDE = {"base", "cloud", "io", "sensor", "image"}
 # what src/reconstruct does.
 HEADERS = {
     "version": "base", "result": "base", "progress": "base", "vec3": "base", "cloud": "cloud",
-    "io": "io", "sensor": "sensor", "lattice": "image", "project": "image", "settings": "image",
+    "io": "io", "sensor": "sensor", "calibrate": "sensor", "lattice": "image", "project": "image",
+    "settings": "image",
     "field": "field", "paper": "codec", "codec": "codec", "compare": "metrics", "simulate": "simulate",
     "render": "render",
 }
