@@ -21,6 +21,9 @@ constexpr std::size_t kSampleReturns = 20000;
 constexpr double kNear_m = 1;
 /// A share that needs no better explanation.
 constexpr double kSurelyRight = .97;
+/// Of elevations, rms, radians: those seen from the sensor's origin, of beams that start beside it,
+/// are a degree off.
+constexpr double kAlike = .06;
 /// Searches for the motion with rings set right in between: labels by elevation need one or two.
 constexpr int kMostRounds = 4;
 
@@ -53,7 +56,7 @@ LatticeSample draw_sample(const Cloud& cloud, const Detection& rings,
 /// Root mean square difference of the elevations; infinite for another number of rings.
 double elevation_difference(const BeamModel& model, const Detection& rings) {
   const std::size_t n = rings.sensor.rings.size();
-  if (model.beams.size() != n || model.slots == 0 || n == 0) {
+  if (model.beams.size() != n || model.slots == 0 || model.slots > kMaxSlots || n == 0) {
     return std::numeric_limits<double>::infinity();
   }
   double sum = 0;
@@ -231,7 +234,7 @@ Result<std::optional<LatticeFit>> find_lattice(const Cloud& cloud, const Detecti
   if (sample.points.empty()) return std::optional<LatticeFit>();
   std::vector<const BeamModel*> fitting;
   for (const BeamModel& model : candidates) {
-    if (std::isfinite(elevation_difference(model, rings))) fitting.push_back(&model);
+    if (elevation_difference(model, rings) < kAlike) fitting.push_back(&model);
   }
   std::stable_sort(fitting.begin(), fitting.end(), [&](const BeamModel* a, const BeamModel* b) {
     return elevation_difference(*a, rings) < elevation_difference(*b, rings);

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "sensor/motion_yaw.hpp"
 #include "sensor/returns.hpp"
 
 namespace curlidar {
@@ -132,54 +133,6 @@ constexpr std::array kTwist{0, 1, 2, 3, 4, 5};
 // A rigid turn about the axis only renames the encoder positions.
 constexpr std::array kQuadratic{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 15, 16, 17};
 
-/// Yaw rates within which a scan is looked for, radians a turn of the sensor.
-constexpr double kMostYaw = .35;
-constexpr double kNoise_m = .0006;  // of a coordinate rounded to millimetres, across a ray
-constexpr std::size_t kYawReturns = 3000;
-
-/// The yaw at which encoder angles agree best with the positions: how much the returns' phases
-/// within a step are alike, for every yaw.
-double scan_yaw(const LatticeSample& sample, const BeamModel& model, const MotionTwist& motion) {
-  struct Phasor {
-    double x, y, cosine, sine;  // where it is, and its turn at every step
-  };
-  std::vector<Phasor> phasors;
-  const double slots = model.slots;
-  const double pace = 1.2 / slots;  // of yaw: .6 radians of phase at most
-  const std::size_t stride = std::max<std::size_t>(1, sample.points.size() / kYawReturns);
-  for (std::size_t i = 0; i < sample.points.size(); i += stride) {
-    const Beam& beam = model.beams[sample.rings[i]];
-    const Unmoved unmoved = undo_motion(motion, sample.points[i]);
-    const auto view = view_along(beam, unmoved.point);
-    if (!view) continue;
-    const double blur = kNoise_m / view->distance_m * slots;  // radians of phase
-    const double weight = std::exp(-blur * blur);
-    if (weight < .1) continue;
-    const double phase = (view->encoder + std::numbers::pi) * slots;
-    const double start = phase + kMostYaw * unmoved.s * slots, turn = -pace * unmoved.s * slots;
-    phasors.push_back(
-        {weight * std::cos(start), weight * std::sin(start), std::cos(turn), std::sin(turn)});
-  }
-  double best = -1, best_rate = 0;
-  const int steps = static_cast<int>(2 * kMostYaw / pace);
-  for (int k = 0; k <= steps; ++k) {
-    double x = 0, y = 0;
-    for (Phasor& phasor : phasors) {
-      x += phasor.x;
-      y += phasor.y;
-      const double turned = phasor.x * phasor.cosine - phasor.y * phasor.sine;
-      phasor.y = phasor.x * phasor.sine + phasor.y * phasor.cosine;
-      phasor.x = turned;
-    }
-    if (x * x + y * y > best) {
-      best = x * x + y * y;
-      best_rate = -kMostYaw + pace * k;
-    }
-  }
-  // Undoing a yaw of w turns azimuth z to z / (1 + w / 2 pi): s w is linear in the old azimuth.
-  return best_rate / (1 - best_rate / kTurn);
-}
-
 }  // namespace
 
 SampleQuality measure(const LatticeSample& sample, const BeamModel& model,
@@ -238,7 +191,9 @@ MotionTwist search_motion(const LatticeSample& sample, const BeamModel& model,
   for (const double scale : {.3, .1, .05, .02}) fit(first, scale, false, 4000, 4);
   const std::span<const int> second = rich ? std::span<const int>(kQuadraticButYaw) : kAllButYaw;
   for (const double scale : {.01, .003}) fit(second, scale, false, 8000, 3);
-  motion.turn.z = scan_yaw(sample, model, motion);
+  const Yaw yaw = scan_yaw(sample, model, motion, rich);
+  motion.turn.z = yaw.turn;
+  motion.turn2.z = yaw.turn2;
   const std::span<const int> last = rich ? std::span<const int>(kQuadratic) : kTwist;
   for (const double scale : {.01, .003}) fit(last, scale, true, 4000, 3);
   fit(last, .002, true, 8000, 1);
