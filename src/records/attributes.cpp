@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <numeric>
 #include <type_traits>
 
 #include "base/try.hpp"
@@ -23,16 +23,29 @@ constexpr std::uint8_t kColumns = 1;  ///< a column for each component of the po
 /// Attributes of more components are packed.
 constexpr std::uint32_t kMaxColumns = 16;
 
-/// Slots that are points, and the others, in their order.
-struct Slots {
-  std::vector<std::uint64_t> points, others;
+/// Some of the slots of a cloud, each with a value for each column: the points, as records; or the
+/// others, as loose ones in the order of the slots.
+struct Part {
+  std::vector<std::uint64_t> slots;
+  RecordGeometry geometry;
+  std::vector<std::uint32_t> records;  ///< of each slot
 
-  explicit Slots(const CloudOrder& order) {
-    for (std::uint64_t slot = 0; slot < order.slots(); ++slot) {
-      (order.kind[slot] == SlotKind::point ? points : others).push_back(slot);
-    }
-  }
+  SequencePlaces places() const { return {geometry, records}; }
 };
+
+std::vector<Part> parts_of(const CloudOrder& order, const RecordGeometry& geometry) {
+  Part points{{}, geometry, order.record}, others;
+  for (std::uint64_t slot = 0; slot < order.slots(); ++slot) {
+    (order.kind[slot] == SlotKind::point ? points : others).slots.push_back(slot);
+  }
+  others.geometry.grid.loose = others.slots.size();
+  others.records.resize(others.slots.size());
+  std::iota(others.records.begin(), others.records.end(), 0u);
+  std::vector<Part> parts;
+  if (!points.slots.empty()) parts.push_back(std::move(points));
+  if (!others.slots.empty()) parts.push_back(std::move(others));
+  return parts;
+}
 
 /// Values of some slots.
 Column pick(const Column& values, std::uint32_t components,
@@ -50,28 +63,14 @@ Column pick(const Column& values, std::uint32_t components,
       values);
 }
 
-/// Undoes pick().
-void place(Column& values, std::uint32_t components, const std::vector<std::uint64_t>& slots,
-           const Column& picked) {
-  std::visit(
-      [&](auto& column) {
-        const auto& from = std::get<std::decay_t<decltype(column)>>(picked);
-        for (std::size_t i = 0; i < slots.size(); ++i) {
-          std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(i * components), components,
-                      column.begin() + static_cast<std::ptrdiff_t>(slots[i] * components));
-        }
-      },
-      values);
-}
-
 class RecordsWriter {
  public:
   RecordsWriter(const CloudOrder& order, const RecordGeometry& geometry)
-      : order_(order), slots_(order), places_{geometry, order.record} {}
+      : parts_(parts_of(order, geometry)) {}
 
   void write(ByteWriter& writer, const Attribute& attribute) const {
     const std::vector<std::byte> packed = pack_slots(attribute);
-    std::vector<std::byte> columns = code_columns(attribute);
+    const std::vector<std::byte> columns = code_columns(attribute);
     const bool is_packed = columns.empty() || packed.size() <= columns.size();
     writer.write(is_packed ? kPacked : kColumns);
     writer.write_bytes(is_packed ? packed : columns);
@@ -88,31 +87,27 @@ class RecordsWriter {
   std::vector<std::byte> code_columns(const Attribute& attribute) const {
     if (attribute.components > kMaxColumns) return {};
     ByteWriter writer;
-    const Column points = pick(attribute.values, attribute.components, slots_.points);
-    const KeyScale scale = scale_of(points);
-    writer.write(static_cast<std::uint8_t>(scale));
-    for (std::uint32_t component = 0; component < attribute.components; ++component) {
-      const auto keys = keys_of(points, scale, component, attribute.components);
-      std::vector<std::int64_t> by_record(keys.size());
-      for (std::size_t i = 0; i < keys.size(); ++i) by_record[order_.record[i]] = keys[i];
-      writer.write_bytes(encode_column(by_record, places_));
-    }
-    if (!slots_.others.empty()) {
-      write_packed_values(writer, pick(attribute.values, attribute.components, slots_.others),
-                          attribute.components);
+    for (const Part& part : parts_) {
+      const Column values = pick(attribute.values, attribute.components, part.slots);
+      const KeyScale scale = scale_of(values);
+      writer.write(static_cast<std::uint8_t>(scale));
+      for (std::uint32_t component = 0; component < attribute.components; ++component) {
+        const auto keys = keys_of(values, scale, component, attribute.components);
+        std::vector<std::int64_t> by_record(keys.size());
+        for (std::size_t i = 0; i < keys.size(); ++i) by_record[part.records[i]] = keys[i];
+        writer.write_bytes(encode_column(by_record, part.places()));
+      }
     }
     return std::move(writer).bytes();
   }
 
-  const CloudOrder& order_;
-  Slots slots_;
-  SequencePlaces places_;
+  std::vector<Part> parts_;
 };
 
 class RecordsReader {
  public:
   RecordsReader(const CloudOrder& order, const RecordGeometry& geometry)
-      : order_(order), slots_(order), places_{geometry, order.record} {}
+      : slots_(order.slots()), parts_(parts_of(order, geometry)) {}
 
   Status read(PayloadReader& reader, Attribute& attribute) const {
     const ScalarType type = type_of(attribute.values);
@@ -120,43 +115,38 @@ class RecordsReader {
     CURLIDAR_TRY(reader.check("attribute"));
     if (form == kPacked) {
       CURLIDAR_TRY_ASSIGN(values, read_packed_values(reader, type, attribute.components,
-                                                     order_.slots() * attribute.components));
+                                                     slots_ * attribute.components));
       attribute.values = std::move(values);
       return {};
     }
     if (form != kColumns || attribute.components > kMaxColumns) {
       return reader.corrupt(fmt::format("unknown form {} of an attribute", form));
     }
-    attribute.values = make_column(type, order_.slots() * attribute.components);
-    return read_columns(reader, attribute);
+    attribute.values = make_column(type, slots_ * attribute.components);
+    for (const Part& part : parts_) CURLIDAR_TRY(read_part(reader, part, attribute));
+    return {};
   }
 
  private:
-  Status read_columns(PayloadReader& reader, Attribute& attribute) const {
+  static Status read_part(PayloadReader& reader, const Part& part, Attribute& attribute) {
     const auto scale = static_cast<KeyScale>(reader.read<std::uint8_t>());
     CURLIDAR_TRY(reader.check("scale of an attribute"));
-    const ScalarType type = type_of(attribute.values);
-    if (!is_scale_of(scale, type)) {
+    if (!is_scale_of(scale, type_of(attribute.values))) {
       return reader.corrupt(
           fmt::format("unknown scale {} of an attribute", static_cast<int>(scale)));
     }
     for (std::uint32_t component = 0; component < attribute.components; ++component) {
-      CURLIDAR_TRY_ASSIGN(keys, decode_column(reader, order_.record.size(), places_));
-      for (std::size_t i = 0; i < slots_.points.size(); ++i) {
-        set_value(attribute.values, slots_.points[i] * attribute.components + component, scale,
-                  keys[order_.record[i]]);
+      CURLIDAR_TRY_ASSIGN(keys, decode_column(reader, part.records.size(), part.places()));
+      for (std::size_t i = 0; i < part.slots.size(); ++i) {
+        set_value(attribute.values, part.slots[i] * attribute.components + component, scale,
+                  keys[part.records[i]]);
       }
     }
-    if (slots_.others.empty()) return {};
-    CURLIDAR_TRY_ASSIGN(others, read_packed_values(reader, type, attribute.components,
-                                                   slots_.others.size() * attribute.components));
-    place(attribute.values, attribute.components, slots_.others, others);
     return {};
   }
 
-  const CloudOrder& order_;
-  Slots slots_;
-  SequencePlaces places_;
+  std::size_t slots_;
+  std::vector<Part> parts_;
 };
 
 }  // namespace
