@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "records/level_coder.hpp"
 
-#include <bit>
-#include <cstdlib>
-
 namespace curlidar {
 namespace {
 
 constexpr std::int32_t kStartWeight = (1 << 20) / 14;
+constexpr std::int32_t kStartError = 10 << 12;
+constexpr int kFewestTableBits = 4, kMostTableBits = 15;
 
 std::uint32_t scatter(std::uint32_t x) {
   x *= 0x9e3779b1u;
@@ -19,57 +18,55 @@ std::uint32_t scatter(std::uint32_t x) {
 }  // namespace
 
 LevelCoder::LevelCoder(int bits, std::size_t records)
-    : bits_(bits), line_bits_(std::clamp(static_cast<int>(std::bit_width(records)) - 1, 4, 15)) {
-  lines_.resize(kContexts << line_bits_);
+    : bits_(bits),
+      table_bits_(std::clamp(static_cast<int>(std::bit_width(records)) - 1, kFewestTableBits,
+                             kMostTableBits)),
+      lines_(kContexts << table_bits_) {
   WeightSet<kInputs> start;
-  for (std::size_t k = 0; k < kContexts; ++k) start.set(k, kStartWeight);
-  for (std::size_t k = kContexts; k < kContexts + kShapes; ++k) start.set(k, kStartWeight);
-  for (auto& errors : errors_) errors.fill(256 * 16 * 10);
-  weights_.assign(8 * 256 + 1024 * 8 + 64 * 8, start);
+  for (std::size_t k = 0; k < kContexts + kShapes; ++k) start.set(k, kStartWeight);
+  weights_.assign(kWeightSets[0] + kWeightSets[1] + kWeightSets[2], start);
+  for (auto& errors : errors_) errors.fill(kStartError);
 }
 
-void LevelCoder::set_contexts(const LevelWindow& w) {
+void LevelCoder::set_contexts(const LevelWindow& window) {
   const auto u = [](std::int32_t value) { return static_cast<std::uint32_t>(value); };
-  const std::uint32_t mean = u(w.mean16) >> 4, half = mean >> 1;
-  const std::uint32_t spread = u(w.spread), misses = u(w.misses);
-  const std::uint32_t left = u(w.left), above = u(w.above), near_left = u(w.near_left),
-                      near_above = u(w.near_above), row = u(w.row), range = u(w.range);
-  const std::uint32_t gradient = u(std::clamp(w.left + w.above - w.above_left, 0, 255));
-  const std::uint32_t apart = u(std::min(std::abs(w.left - w.above), 15));
-  const std::array<std::uint32_t, kContexts> contexts = {
-      left | near_left << 8,
-      above | near_above << 8,
-      left | above << 8,
-      mean | spread << 8,
-      row | half << 10,
-      range | half << 6 | spread << 14,
-      left | u(w.left2) << 8,
-      gradient | spread << 8,
-      (left + above + 1) / 2 | apart << 8 | misses << 12,
-      mean | misses << 8,
-      left / 2 | above / 2 << 7 | u(w.above_right) / 2 << 14 | u(w.above_left) / 4 << 21,
-      row | range << 10 | left / 8 << 16,
-      near_left | near_above << 2 | spread << 4 | half << 8,
-      left / 4 | above / 4 << 6 | range << 12 | row / 4 << 18,
-      u(w.shape) | mean / 4 << 10};
+  const std::uint32_t left = u(window.left), above = u(window.above), row = u(window.row);
+  const std::uint32_t mean = u(window.mean16) / 16, spread = u(window.spread);
+  const std::uint32_t range = u(window.range), shape = u(window.shape);
+  const std::uint32_t near_left = u(window.near_left), near_above = u(window.near_above);
+  const std::uint32_t gradient =
+      u(std::clamp(window.left + window.above - window.above_left, 0, 255));
+  const std::array<std::uint32_t, kContexts> contexts = {0,
+                                                         left | near_left << 8,
+                                                         above | near_above << 8,
+                                                         left | u(window.left2) << 8,
+                                                         gradient | spread << 8,
+                                                         row << 10 | mean / 2,
+                                                         row << 10 | range | left / 8 << 6,
+                                                         row << 16 | range << 8 | left,
+                                                         row << 10 | shape,
+                                                         mean / 2 | range << 7 | spread << 13,
+                                                         shape | mean / 4 << 10};
   for (std::size_t k = 0; k < kContexts; ++k) hash_[k] = scatter(contexts[k] + 1);
-  set_ = {spread, (misses * 4 + near_left) * 4 + near_above, range};
+  set_ = {spread, (u(window.misses) * 4 + near_left) * 4 + near_above, range};
+  set_shapes(window);
 }
 
-void LevelCoder::set_shapes(const LevelWindow& w) {
-  const auto pick = [](std::int32_t a, std::int32_t b) {
-    return static_cast<std::size_t>(a * 8 + b);
+void LevelCoder::set_shapes(const LevelWindow& window) {
+  const auto of = [](std::int32_t a, std::int32_t b) {
+    return static_cast<std::size_t>(8 * a + b);
   };
-  shapes_[0].aim(w.mean16, errors_[0][pick(w.spread, w.misses)]);
-  shapes_[1].aim(16 * w.left, errors_[1][pick(w.near_left, w.misses)]);
-  shapes_[2].aim(16 * w.above, errors_[2][pick(w.near_above, w.spread)]);
+  shapes_[0].aim(window.mean16, errors_[0][of(window.spread, window.misses)]);
+  shapes_[1].aim(16 * window.left, errors_[1][of(window.near_left, window.misses)]);
+  shapes_[2].aim(16 * window.above, errors_[2][of(window.near_above, window.spread)]);
+  shapes_[3].aim(window.mean16, errors_[3][of(0, window.row & 63)]);
 }
 
 void LevelCoder::aim(std::uint32_t node) {
   line_root_ = node;
   for (std::size_t k = 0; k < kContexts; ++k) {
-    const std::uint32_t hash = scatter(hash_[k] + node * 0x2545f491u) >> (32 - line_bits_);
-    line_[k] = lines_[(k << line_bits_) + hash].data();
+    const std::uint32_t hash = scatter(hash_[k] + node * 0x2545f491u) >> (32 - table_bits_);
+    line_[k] = lines_[(k << table_bits_) + hash].data();
   }
 }
 

@@ -25,7 +25,9 @@ constexpr std::array<Neighbour, 12> kNeighbours = {{{0, -1, 64},
                                                     {-2, 1, 16}}};
 /// Records of both rows after which the rows' means are compared.
 constexpr std::int32_t kEnough = 50;
-constexpr std::int32_t kUsual = 20;  ///< level where nothing is known
+constexpr std::int32_t kMostCount = 200;  ///< that a row's mean is taken over
+constexpr std::int32_t kUsual = 20;       ///< level where nothing is known
+constexpr std::int64_t kMostLevel16 = 255 * 16;
 
 std::int32_t width_of(std::int64_t value) {
   return static_cast<std::int32_t>(std::bit_width(static_cast<std::uint64_t>(value)));
@@ -94,11 +96,7 @@ void LevelScan::weigh(LevelWindow& window) const {
     const std::int64_t apart = std::min<std::int64_t>(
         std::abs(std::int64_t{range_at(row, column)} - range_) * 16 / unit, 1023);
     const std::int64_t weight = std::int64_t{at.weight} * 4096 / (256 + apart * apart) + 1;
-    level *= 16;
-    const auto here = static_cast<std::size_t>(row_), there = static_cast<std::size_t>(row);
-    if (at.row != 0 && row_count_[here] > kEnough && row_count_[there] > kEnough) {
-      level += (row_mean_[here] - row_mean_[there]) >> 4;
-    }
+    level = std::clamp<std::int64_t>(16 * level + lift(row), 0, kMostLevel16);
     weights += weight;
     sum += weight * level;
     squares += weight * level * level;
@@ -108,11 +106,28 @@ void LevelScan::weigh(LevelWindow& window) const {
     window.spread = 5;
     return;
   }
-  window.mean16 = static_cast<std::int32_t>(std::clamp<std::int64_t>(sum / weights, 0, 255 * 16));
   const std::int64_t mean = sum / weights;
+  window.mean16 = static_cast<std::int32_t>(mean);
   const std::int64_t variance = std::max<std::int64_t>(squares / weights - mean * mean, 0);
-  // Of 16 levels' squares: deviation 1 is 256.
   window.spread = std::min(half_octaves(variance >> 6) / 2, 7);
+}
+
+/// How much higher, in 1/16, levels are in the current row than in another.
+std::int32_t LevelScan::lift(std::int64_t row) const {
+  const auto here = static_cast<std::size_t>(row_), there = static_cast<std::size_t>(row);
+  if (here == there || row_count_[here] <= kEnough || row_count_[there] <= kEnough) return 0;
+  return (row_mean_[here] - row_mean_[there]) >> 4;
+}
+
+/// How wrong the means of the neighbours were.
+std::int32_t LevelScan::misses() const {
+  const auto miss_at = [&](std::int64_t row, std::int64_t column) -> std::int32_t {
+    if (level_at(row, column) < 0) return 0;
+    return levels_[static_cast<std::size_t>(row * geometry_.grid.columns + column)].miss;
+  };
+  const std::int32_t sum = 2 * miss_at(row_, column_ - 1) + 2 * miss_at(row_ - 1, column_) +
+                           miss_at(row_ - 1, column_ + 1);
+  return std::min(half_octaves(sum / 2) * 5 / 8, 7);
 }
 
 /// Slopes along and across the row, and which neighbours are missing: those of any row, as the
@@ -140,8 +155,7 @@ LevelWindow LevelScan::window() const {
   };
   if (!in_cell_) {
     w.left = known_or(loose_[0].level, kUsual);
-    w.above = w.left2 = known_or(loose_[1].level, w.left);
-    w.above2 = w.above_left = w.above_right = w.above;
+    w.above = w.above_left = w.left2 = known_or(loose_[1].level, w.left);
     w.mean16 = 8 * (w.left + w.above);
     w.misses = std::min(half_octaves(loose_[0].miss + loose_[1].miss), 7);
     w.spread = std::min(half_octaves(std::abs(w.left - w.above)) / 2, 7);
@@ -157,21 +171,10 @@ LevelWindow LevelScan::window() const {
   w.left = left >= 0 ? left : known_or(above, kUsual);
   w.above = known_or(above, w.left);
   w.above_left = known_or(level_at(row_ - 1, column_ - 1), w.above);
-  w.above_right = known_or(level_at(row_ - 1, column_ + 1), w.above);
   w.left2 = known_or(level_at(row_, column_ - 2), w.left);
-  w.above2 = known_or(level_at(row_ - 2, column_), w.above);
   w.range = half_octaves(range_ >> 14);
   weigh(w);
-  const auto miss_at = [&](std::int64_t row, std::int64_t column) -> std::int32_t {
-    if (level_at(row, column) < 0) return 0;
-    return levels_[static_cast<std::size_t>(row * geometry_.grid.columns + column)].miss;
-  };
-  w.misses =
-      std::min(half_octaves((2 * miss_at(row_, column_ - 1) + 2 * miss_at(row_ - 1, column_) +
-                             miss_at(row_ - 1, column_ + 1)) /
-                            2) *
-                   5 / 8,
-               7);
+  w.misses = misses();
   w.shape = shape();
   return w;
 }
@@ -186,7 +189,7 @@ void LevelScan::set(const LevelWindow& window, std::int32_t level) {
   levels_[cell_ - 1] = coded;
   const auto row = static_cast<std::size_t>(row_);
   std::int32_t& count = row_count_[row];
-  if (count < 200) ++count;
+  if (count < kMostCount) ++count;
   row_mean_[row] += (level * 256 - row_mean_[row]) / count;
 }
 

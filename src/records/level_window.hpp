@@ -13,14 +13,15 @@ namespace curlidar {
 
 /// The surroundings of one record. Levels lie in [0, 255].
 struct LevelWindow {
-  std::int32_t row = 0;              ///< 0 for loose records
-  std::int32_t left = 0, above = 0;  ///< of the nearest records there, or a substitute
-  std::int32_t left2 = 0, above2 = 0, above_left = 0, above_right = 0;
-  std::int32_t mean16 = 0;                     ///< 16 times the mean about, by distance in space
-  std::int32_t spread = 0;                     ///< class of the deviations from it, 0..7
-  std::int32_t misses = 0;                     ///< class of how wrong the means about were, 0..7
-  std::int32_t near_left = 3, near_above = 3;  ///< class of the distance in range, 0 (near) to 3
-  std::int32_t range = 0;                      ///< class of the range, about three an octave
+  std::int32_t row = 0;  ///< 0 for loose records
+  /// Of the nearest records there, or a substitute.
+  std::int32_t left = 0, left2 = 0, above = 0, above_left = 0;
+  std::int32_t mean16 = 0;  ///< 16 times the mean about, by distance in space
+  std::int32_t spread = 0;  ///< class of the deviations from it, 0..7
+  std::int32_t misses = 0;  ///< class of how wrong the means about were, 0..7
+  /// Classes of the distance in range, 0 (near) to 3.
+  std::int32_t near_left = 3, near_above = 3;
+  std::int32_t range = 0;  ///< class of the range, two an octave, 0..35
   std::int32_t shape = 0;  ///< slopes of the surface and records missing about, below 1024
 };
 
@@ -44,6 +45,8 @@ class LevelScan {
   std::int32_t level_at(std::int64_t row, std::int64_t column) const;
   std::int32_t range_at(std::int64_t row, std::int64_t column) const;
   void weigh(LevelWindow& window) const;
+  std::int32_t lift(std::int64_t row) const;
+  std::int32_t misses() const;
   std::int32_t shape() const;
   std::int32_t distance_class(std::int32_t range) const;
 
