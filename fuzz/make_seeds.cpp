@@ -20,6 +20,7 @@
 #include "hostile/targets/mask.hpp"
 #include "hostile/targets/residual.hpp"
 #include "hostile/targets/scan.hpp"
+#include "support/ray_tables.hpp"
 
 namespace curlidar::fuzz {
 namespace {
@@ -91,7 +92,7 @@ Bytes reframed(ByteSpan file, std::initializer_list<std::size_t> header, bool sc
   const std::vector<Chunk> chunks = read_container(file).value();
   for (const Chunk& chunk : chunks) {
     const auto type = static_cast<std::uint8_t>(chunk.type);
-    if (scan_only && (type < 0x10 || type > 0x15)) continue;
+    if (scan_only && (type < 0x10 || type > 0x16)) continue;
     test::write_fuzz_chunk(scan_only ? static_cast<std::uint8_t>(type - 0x10) : type, chunk.payload,
                            out);
   }
@@ -154,6 +155,41 @@ std::vector<std::uint8_t> mask_of(const compact::Image& image) {
   return mask;
 }
 
+/// The image of a scan on rays: rows of a frozen table or written out, columns a firing each.
+void write_ray_scans(const Seeds& seeds, const std::string& scene, const compact::Image& image) {
+  for (const std::uint32_t frozen : {0u, 1u, 3u}) {
+    compact::RowTable table = frozen == 0   ? test::inline_rays(12, test::turning(512, 8, 3), 512)
+                              : frozen == 1 ? test::frozen_rays(1, test::turning(4000, 62.5, 0))
+                                            : test::frozen_rays(3, test::turning(2000, 31.25, 0));
+    if (frozen != 3) test::set_motion(*table.rays, frozen == 0);
+    compact::Image rays{test::rows_of(table), table.turn_columns, {}};
+    for (std::uint32_t row = 0; row < rays.rows; ++row) {
+      for (std::uint32_t column = 0; column < rays.columns; ++column) {
+        const bool inside = row < image.rows && column < image.columns;
+        rays.range.push_back(inside ? image.range[row * image.columns + column] : 0);
+      }
+    }
+    compact::ScanSettings settings;
+    settings.steps = {4000, frozen == 0 ? 700 : 0, 0, 3, 4};
+    settings.effort = 2;
+    settings.bands = settings.sectors = frozen == 1 ? 2 : 1;
+    settings.threads = 1;
+    const auto encoded = encode_scan(rays, table, settings);
+    Bytes out;
+    append(out, {frozen == 3 ? test::kRegion : 0u, 3, 7, 5, 50});
+    for (const compact::ScanChunk& chunk : encoded->chunks) {
+      test::write_fuzz_chunk(static_cast<std::uint8_t>(static_cast<unsigned>(chunk.part) - 0x10),
+                             chunk.payload, out);
+    }
+    seeds.write("scan", scene + "-rays-" + std::to_string(frozen), out);
+    Bytes alone;
+    const std::size_t columns = rays.columns - 1;
+    append(alone, {rays.rows - 1, columns, columns >> 8});
+    append(alone, write_rays(table));
+    seeds.write("rays", std::to_string(frozen), alone);
+  }
+}
+
 void write_masks(const Seeds& seeds, const std::string& scene, const compact::Image& image) {
   const std::size_t rows = image.rows, columns = image.columns;
   for (const std::size_t options : {0u, 1u, 5u}) {
@@ -206,6 +242,7 @@ void write_all(const Seeds& seeds) {
   for (const char* scene : {"street", "room"}) {
     const CompactImage scan = image_of(scene, 12, 64);
     write_scans(seeds, scene, scan);
+    write_ray_scans(seeds, scene, scan.image);
     write_masks(seeds, scene, scan.image);
     write_fields(seeds, scene, scan.image);
     write_residuals(seeds, scene, scan.image);

@@ -45,7 +45,7 @@ const std::map<std::string, Pair>& golden() {
 
 TEST(Golden, CoversTheFormat) {
   std::size_t residual = 0, no_residual = 0, lattice = 0, segments = 0, height = 0, offset = 0;
-  std::size_t cut = 0, part_of_a_turn = 0, rows = 0;
+  std::size_t rays = 0, cut = 0, part_of_a_turn = 0, rows = 0;
   for (const auto& [name, pair] : golden()) {
     const test::Json& twin = pair.twin;
     (twin["residual_step"] == 0 ? no_residual : residual) += 1;
@@ -54,6 +54,7 @@ TEST(Golden, CoversTheFormat) {
     height += !twin["height"].empty();
     offset += !twin["range_offset"].empty();
     cut += twin["complete"] == false;
+    rays += twin.contains("rays");
     part_of_a_turn += twin["columns"] != twin["turn_columns"];
     rows = std::max<std::size_t>(rows, twin["rows"]);
   }
@@ -64,6 +65,7 @@ TEST(Golden, CoversTheFormat) {
   EXPECT_GT(height, 0u);
   EXPECT_GT(offset, 0u);
   EXPECT_GT(cut, 0u);
+  EXPECT_GT(rays, 2u);
   EXPECT_GT(part_of_a_turn, 0u);
   EXPECT_EQ(rows, 128u);
 }

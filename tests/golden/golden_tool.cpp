@@ -10,6 +10,7 @@
 #include <iterator>
 #include <string>
 
+#include "compact/ray_chunk.hpp"
 #include "compact/scan_encoder.hpp"
 #include "golden/twin.hpp"
 
@@ -56,6 +57,37 @@ compact::Image changed_image(const compact::DecodedScan& scan, const Json& chang
   return image;
 }
 
+/// Rays as a twin has them, with their shifts: of the rows that there are, or of a frozen table.
+void set_rays(compact::RowTable& table, const Json& changes) {
+  compact::RayTable& rays = table.rays.emplace();
+  change(changes, "slots", rays.slots);
+  change(changes, "firings", rays.firings);
+  change(changes, "unit", rays.range_unit_q48);
+  change(changes, "azimuth_shift", rays.azimuth_shift);
+  change(changes, "height_shift", rays.height_shift);
+  change(changes, "lateral_shift", rays.lateral_shift);
+  change(changes, "phase_shift", rays.phase_shift);
+  change(changes, "turn_shift", rays.turn_shift);
+  change(changes, "move_shift", rays.move_shift);
+  for (const Json& ray : changes.value("rays", Json::array())) {
+    rays.rays.push_back({ray[0], ray[1], ray[2], ray[3]});
+  }
+  if (changes.contains("motion")) {
+    const Json& numbers = changes.at("motion");
+    compact::Motion& m = rays.motion;
+    std::size_t i = 0;
+    for (auto* part : {&m.turn, &m.move, &m.turn2, &m.move2, &m.rigid_turn, &m.rigid_move}) {
+      numbers.at(i++).get_to(*part);
+    }
+  }
+  table.height.clear();
+  table.turn_columns = static_cast<std::uint32_t>(rays.firings.size());
+  table.first_column = table.height_shift = 0;
+  std::uint32_t frozen = 0;
+  change(changes, "table", frozen);
+  if (frozen != 0) compact::use_beam_table(frozen, table);
+}
+
 compact::RowTable changed_table(compact::RowTable table, const Json& changes) {
   std::size_t rows = table.elevation.size();
   change(changes, "rows", rows);
@@ -70,6 +102,7 @@ compact::RowTable changed_table(compact::RowTable table, const Json& changes) {
   change(changes, "offset_shift", table.offset_shift);
   change(changes, "turn_columns", table.turn_columns);
   change(changes, "first_column", table.first_column);
+  if (changes.contains("rays")) set_rays(table, changes.at("rays"));
   compact::round_to_shifts(table);
   return table;
 }

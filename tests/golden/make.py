@@ -40,6 +40,21 @@ RECODED = {
         "height": [1000 * k - 7000 for k in range(16)], "height_shift": 5,
         "range_offset": [(k * 7919) % 4096 - 2048 for k in range(16)], "offset_shift": 3}),
     "lattice": ("room-16-fast", {"lattice": 17179869, "step": 6000}),
+    "rays-named": ("street-16", {"rays": {
+        "table": 3, "unit": 1125899906843, "firings": [20 * k + k * k % 7 for k in range(96)]}}),
+    "rays-moved": ("room-64-noisy", {"bands": 2, "sectors": 2, "rays": {
+        "table": 1, "firings": [190 * k + 37 for k in range(20)],
+        "turn_shift": 4, "move_shift": 2,
+        "motion": [[160000, -48000, 33554432], [92000, -1200, 400], *[[0, 0, 0]] * 4]}}),
+    "rays-own": ("room-16-fast", {
+        "range_offset": [(k * 5147) % 2048 - 1024 for k in range(16)], "offset_shift": 3,
+        "elevation_shift": 6, "lattice": 17179869, "step": 6000, "rays": {
+            "slots": 36000, "unit": 562949953421, "azimuth_shift": 7, "phase_shift": 1,
+            "firings": [880 * k + (k * k * 31) % 41 + (300 if k > 30 else 0) for k in range(40)],
+            "rays": [[(k % 4 - 1) * 67108864, 9000 * (k // 8) - 700 * k, 1704 * (k % 2 * 2 - 1),
+                      (k * 26) % 131 // 2 * 2 - 64] for k in range(16)],
+            "motion": [[9000000, -1234567, 250000000], [-70000, 1000, 13], [5, -600000, 70000],
+                       [0, 6000, 0], [0, 0, -800000000], [65536000, -1, 0]]}}),
     "tiny-leaves": ("street-16", {"root_log2": 2, "smallest_leaf": 1, "columns": 40}),
     "large-roots": ("forest-40-small", {"root_log2": 5, "smallest_leaf": 64, "effort": 2}),
     "empty-rows": ("street-16", {"empty_rows": [0, 1, 6, 7, 8, 15], "columns": 48}),
@@ -54,7 +69,7 @@ CUT = {"cut-in-mask": ("segments", 15), "cut-in-field": ("segments", 60),
 
 
 # Streams of noise, which reach what no encoder would write. name: the file that gives the row
-# table, way of the mask (None: the mask of that file), parameters in the order of the file; flags:
+# table and rays, way of the mask (None: the mask of that file), parameters in the order of the file; flags:
 # root_log2, 8 residuals, 32 a turn, 64 a lattice.
 NOISE = {
     "noise-mask-1": ("street-16", 1, (0x2B, 16, 24, 9000, 4, 500, 900, 893)),
@@ -62,6 +77,7 @@ NOISE = {
     "noise-mask-3": ("street-16", 3, (0x2D, 16, 24, 1 << 24, 64, 1, 3000, 0)),
     "noise-field": ("room-16-fast", None, (0x04, 16, 40, 5000, 8)),
     "noise-residual": ("heights-offsets", None, (0x2C, 16, 40, 5000, 8, 700, 1000, 980)),
+    "noise-rays": ("rays-own", None, (0x0C, 16, 40, 5000, 8, 700)),
     "noise-lattice": ("heights-offsets", None, (0x6D, 16, 40, 5000, 8, 17179869, 1000, 980)),
 }
 
@@ -81,7 +97,9 @@ def noise_file(name, source, way, parameters):
         mask = noise("mask", 700)
         mask = bytes([(3 - way) << 6 | mask[0] & 63]) + mask[1:]
     payload = bytes([parameters[0]]) + b"".join(varint(value) for value in parameters[1:])
-    made = [(0x10, payload), (0x11, chunks[0x11]), (0x13, mask), (0x14, noise("field", 2500))]
+    made = [(0x10, payload), (0x11, chunks[0x11])]
+    made += [(0x16, chunks[0x16])] if 0x16 in chunks else []
+    made += [(0x13, mask), (0x14, noise("field", 2500))]
     if parameters[0] & 8:
         made.append((0x15, varint(40) + noise("flags", 40) + noise("residual", 3500)))
     return file_of(made)

@@ -36,6 +36,20 @@ inline Json every_nth(const std::vector<Vec3>& points, std::size_t n) {
   return out;
 }
 
+inline Json rays_of(const compact::RayTable& table) {
+  Json twin;
+  twin["table"] = table.table;
+  twin["slots"] = table.slots;
+  twin["unit"] = table.range_unit_q48;
+  twin["firings"] = table.firings;
+  for (const compact::Ray& ray : table.rays) {
+    twin["rays"].push_back({ray.azimuth_offset, ray.height, ray.lateral, ray.range_phase});
+  }
+  const compact::Motion& m = table.motion;
+  twin["motion"] = {m.turn, m.move, m.turn2, m.move2, m.rigid_turn, m.rigid_move};
+  return twin;
+}
+
 inline Json header_of(const compact::DecodedScan& scan, bool complete) {
   const compact::ScanParameters& p = scan.parameters;
   const compact::RowTable& table = scan.table;
@@ -55,6 +69,7 @@ inline Json header_of(const compact::DecodedScan& scan, bool complete) {
   twin["elevation"] = table.elevation;
   twin["height"] = table.height;
   twin["range_offset"] = table.range_offset;
+  if (table.rays) twin["rays"] = rays_of(*table.rays);
   return twin;
 }
 

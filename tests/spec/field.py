@@ -210,7 +210,7 @@ class Field:
         for cell in b.cells:
             layer = labels[cell]
             surface = layers[layer]
-            range_ = surface.range(self.window.direction(*cell))
+            range_ = self.window.range(surface, *cell)
             self.known[cell] = Known(surface, self.surfaces + layer, range_, count, b.n, number)
         self.surfaces += count
         self.leaves.append(b)

@@ -59,7 +59,7 @@ class Parameters:
                 for column, columns in parts(self.columns, self.sectors)]
 
 
-class _Numbers:
+class Numbers:
     """Numbers of one kind and the models that code them."""
 
     def __init__(self, decoder):
@@ -88,38 +88,42 @@ class _Numbers:
         return -(t + 1) if negative else t + 1
 
 
+def sequence(decoder, rows, differences, most):
+    """One number for each row."""
+    shift = sum(decoder.plain() << b for b in range(4, -1, -1))
+    k = sum(decoder.plain() << b for b in range(1, -1, -1))
+    _need(shift <= 24, "shift of a sequence")
+    first, later = Numbers(decoder), Numbers(decoder)
+    values, u, m, fresh = [], 0, 0, True
+    for row in range(rows):
+        if differences and row == 0:
+            u = first.next()
+        else:
+            d = (m + 128 >> 8) + later.next()
+            m = 256 * d if fresh else m + (256 * d - m >> k)
+            fresh = False
+            u = u + d if differences else d
+        _need(abs(u << shift) <= most, "a row's number")
+        values.append(u << shift)
+    return values
+
+
 class RowTable:
-    """The compact_sensor chunk. `height` and `range_offset` are empty where there are none."""
+    """The compact_sensor chunk. `height` and `range_offset` are empty where there are none;
+    elevations are in the chunk of the rays, if the scan `has_rays`."""
 
     def __init__(self, payload, rows):
         reader = Reader(payload)
         flags = reader.u8()
-        if flags & ~3:
+        if flags & ~7:
             raise Unsupported("compact_sensor: flags of a later version")
+        self.has_rays = bool(flags & 4)
+        _need(not self.has_rays or not flags & 1, "heights beside rays")
         decoder = RangeDecoder(payload[1:])
-        self.elevation = self._sequence(decoder, rows, True, 1 << 30)
-        self.height = self._sequence(decoder, rows, False, 1 << 22) if flags & 1 else []
-        self.range_offset = self._sequence(decoder, rows, False, 1 << 22) if flags & 2 else []
+        self.elevation = [] if self.has_rays else sequence(decoder, rows, True, 1 << 30)
+        self.height = sequence(decoder, rows, False, 1 << 22) if flags & 1 else []
+        self.range_offset = sequence(decoder, rows, False, 1 << 22) if flags & 2 else []
         _need(not decoder.exhausted and decoder.read >= len(payload) - 1, "compact_sensor")
-
-    @staticmethod
-    def _sequence(decoder, rows, differences, most):
-        shift = sum(decoder.plain() << b for b in range(4, -1, -1))
-        k = sum(decoder.plain() << b for b in range(1, -1, -1))
-        _need(shift <= 24, "shift of a sequence")
-        first, later = _Numbers(decoder), _Numbers(decoder)
-        values, u, m, fresh = [], 0, 0, True
-        for row in range(rows):
-            if differences and row == 0:
-                u = first.next()
-            else:
-                d = (m + 128 >> 8) + later.next()
-                m = 256 * d if fresh else m + (256 * d - m >> k)
-                fresh = False
-                u = u + d if differences else d
-            _need(abs(u << shift) <= most, "a row's number")
-            values.append(u << shift)
-        return values
 
 
 def read_index(payload, chunks):

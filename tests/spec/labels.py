@@ -18,8 +18,7 @@ class _Label:
         self.labels = labels
         self.row, self.column = cell
         self.count = len(layers)
-        direction = field.window.direction(*cell)
-        self.ranges = [layer.range(direction) for layer in layers]
+        self.ranges = [field.window.range(layer, *cell) for layer in layers]
 
     def at(self, up, right):
         """The layer of a cell, None if unknown."""

@@ -7,9 +7,10 @@ from header import Parameters, RowTable
 from integers import clip, sin_cos
 from mask import MaskDecoder
 from residual import ResidualDecoder
-from surface import Window
+from rays import Rays
+from surface import RayWindow, Window
 
-PARAMETERS, SENSOR, INDEX, MASK, FIELD, RESIDUAL = range(0x10, 0x16)
+PARAMETERS, SENSOR, INDEX, MASK, FIELD, RESIDUAL, RAYS = range(0x10, 0x17)
 LAYERS = (MASK, FIELD, RESIDUAL)
 TOP = 1 << 30
 
@@ -56,6 +57,15 @@ class Scan:
         self.table = RowTable(only(SENSOR), p.rows)
         self.heights = self.table.height or [0] * p.rows
         self.offsets = self.table.range_offset or [0] * p.rows
+        self.rays = None
+        if self.table.has_rays:
+            if p.turn_columns != p.columns or p.first_column:
+                raise Corrupt("rays need the firings of a whole turn")
+            self.rays = Rays(only(RAYS), p.rows, p.columns)
+            self.table.elevation = self.rays.elevation
+            self.offsets = [b - ray[3] for b, ray in zip(self.offsets, self.rays.rays)]
+        elif any(chunk.kind == RAYS for chunk in chunks):
+            raise Corrupt("rays of a scan that has none")
 
     def _count(self):
         return self.parameters.bands * self.parameters.sectors
@@ -78,8 +88,11 @@ class Scan:
         _sound(mask_chunk, mask.complete_rows == rows, "mask")
         if mask.complete_rows < rows or field_chunk is None:
             return 0
-        window = Window(self.table.elevation[row:row + rows], p.turn_columns,
-                        p.first_column + column, columns, p.step)
+        if self.rays:
+            window = RayWindow(self.rays, row, column, rows, columns, p.step)
+        else:
+            window = Window(self.table.elevation[row:row + rows], p.turn_columns,
+                            p.first_column + column, columns, p.step)
         decoder = RangeDecoder(field_chunk.payload)
         field = Field(decoder, window, mask.rows, p.root_log2, p.smallest_leaf,
                       not field_chunk.whole)
@@ -124,6 +137,8 @@ class Scan:
     def point(self, row, column):
         """x, y, z in units of 2^-36 m."""
         p, r = self.parameters, self.range[row][column]
+        if self.rays:
+            return self.rays.point(row, column, r)
         sin_e, cos_e = sin_cos(self.table.elevation[row] + self.heights[row] * 683565276 // r)
         turn = p.first_column + column
         sin_a, cos_a = sin_cos((1 << 31) + (turn << 32) // p.turn_columns)

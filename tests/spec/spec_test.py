@@ -25,6 +25,7 @@ class SpecTest(unittest.TestCase):
             self.assertEqual(getattr(scan.parameters, field), twin[field], field)
         for field in ("elevation", "height", "range_offset"):
             self.assertEqual(getattr(scan.table, field), twin[field], field)
+        self.check_rays(scan.rays, twin.get("rays"))
         for field in ("field", "surface", "range"):
             wanted = twin[field] if twin[field] is not None else twin["range"]
             self.assertTrue(getattr(scan, field) == wanted, f"{field} differs")
@@ -32,6 +33,11 @@ class SpecTest(unittest.TestCase):
         self.assertEqual(len(points), twin["returns"])
         self.assertTrue(points[::twin["points_every"]] == twin["points"])
         self.check_index(read_chunks(data, cut=True))
+
+    def check_rays(self, rays, twin):
+        self.assertEqual(rays is None, twin is None)
+        for field, wanted in (twin or {}).items():
+            self.assertEqual(getattr(rays, field), wanted, field)
 
     def check_index(self, chunks):
         sizes = [len(chunk.payload) for kind in LAYERS for chunk in chunks

@@ -20,12 +20,45 @@ class Window:
     def azimuth(self, column):
         return ((1 << 31) + ((self.first + column << 32) // self.turn)) % (1 << 32)
 
+    def azimuth_between(self, total):
+        """Half-way between two columns of the segment, given by their sum."""
+        return (1 << 31) + (2 * self.first + total << 31) // self.turn
+
+    def cell_azimuth(self, row, column):
+        return self.azimuth(column)
+
+    def range(self, surface, row, column):
+        """Of a surface in a cell."""
+        return surface.range(self.direction(row, column))
+
     @lru_cache(maxsize=None)
     def direction(self, row, column):
-        sin_a, cos_a = sin_cos(self.azimuth(column))
+        sin_a, cos_a = sin_cos(self.cell_azimuth(row, column))
         sin_e, cos_e = sin_cos(self.elevations[row])
         return ((cos_e * cos_a + (1 << 37)) >> 38, (cos_e * sin_a + (1 << 37)) >> 38,
                 (sin_e + 128) >> 8)
+
+
+class RayWindow(Window):
+    """The same for a segment on the sensor's own rays, which begins at (row, column) of the image."""
+
+    def __init__(self, rays, row, column, rows, columns, step):
+        super().__init__(rays.elevation[row:row + rows], len(rays.firings), column, columns, step)
+        self.rays = rays
+        self.first_row = row
+
+    def azimuth_between(self, total):
+        total += 2 * self.first
+        a, b = (self.rays.encoder_angle(k) for k in (total // 2, (total + 1) // 2))
+        return a + (b - a) % (1 << 32) // 2
+
+    def cell_azimuth(self, row, column):
+        return self.rays.azimuth(self.first_row + row, self.first + column)
+
+    def range(self, surface, row, column):
+        o = self.rays.origin(self.first_row + row, self.first + column)
+        beside = sum(n * x for n, x in zip(surface.plane, o)) >> 16
+        return surface.range(self.direction(row, column), (1 << 30) - beside)
 
 
 def _inverse_root(x, bits):
@@ -76,8 +109,7 @@ class Patch:
 
     def __init__(self, window, shape, column, width):
         self.shape = shape
-        turns = (2 * window.first + 2 * column + width - 1 << 31) // window.turn
-        sin_a, cos_a = sin_cos((1 << 31) + turns)
+        sin_a, cos_a = sin_cos(window.azimuth_between(2 * column + width - 1))
         self.C = (shape.cos * cos_a >> 30, shape.cos * sin_a >> 30, shape.sin)
         self.U = (-sin_a, cos_a, 0)
         self.V = (-shape.sin * cos_a >> 30, -shape.sin * sin_a >> 30, shape.cos)
@@ -98,8 +130,9 @@ def _dot(a, b):
     return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) >> 22
 
 
-def range_of(inverse):
-    return (1 << 46) // clip(inverse, 1 << 19, 1 << 34)
+def range_of(inverse, share=1 << 30):
+    quotient = (clip(share, 1 << 28, 1 << 32) << 16) // clip(inverse, 1 << 19, 1 << 34)
+    return clip(quotient, 1 << 12, 1 << 27)
 
 
 def add_axis(plane, k, axis):
@@ -122,11 +155,11 @@ class Surface:
     def plane_range(self, d):
         return range_of(_dot(self.plane, d))
 
-    def range(self, d):
+    def range(self, d, share=1 << 30):
         inverse = _dot(self.plane, d)
         if any(self.curves):
             inverse += sum(a * b for a, b in zip(self.curves, self.patch.squares(d))) >> 20
-        return range_of(inverse)
+        return range_of(inverse, share)
 
 
 def step_40(inverse, step):

@@ -25,7 +25,7 @@ inline compact::ScanChunks chunks_of(const PartialContainer& file) {
   out.complete = file.complete;
   const auto add = [&](ChunkType type, ByteSpan payload, std::size_t offset, bool whole) {
     const auto number = static_cast<std::uint8_t>(type);
-    if (number < 0x10 || number > 0x15) return;
+    if (number < 0x10 || number > 0x16) return;
     out.chunks.push_back({static_cast<compact::ScanPart>(number), payload, offset, whole});
   };
   for (const Chunk& chunk : file.chunks) add(chunk.type, chunk.payload, chunk.offset, true);

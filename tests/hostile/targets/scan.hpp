@@ -2,9 +2,12 @@
 // All chunks of a compact scan, whole, cut off and in part.
 #pragma once
 
+#include <algorithm>
+#include <cstdlib>
 #include <string>
 
 #include "compact/scan_decoder.hpp"
+#include "compact/scan_points.hpp"
 #include "hostile/targets/chunks.hpp"
 
 namespace curlidar::test {
@@ -51,6 +54,21 @@ inline std::string check_planes(const compact::DecodedScan& scan) {
   return "";
 }
 
+/// Points must be exact in doubles.
+inline std::string check_points(const compact::DecodedScan& scan) {
+  const compact::PointTable points(scan.table, scan.parameters.rows, scan.parameters.columns);
+  const std::size_t columns = scan.parameters.columns;
+  for (std::size_t cell = 0; cell < scan.range.size(); ++cell) {
+    if (scan.range[cell] == 0) continue;
+    const compact::FixedPoint p =
+        points.fixed(static_cast<std::uint32_t>(cell / columns),
+                     static_cast<std::uint32_t>(cell % columns), scan.range[cell]);
+    constexpr std::int64_t most = std::int64_t{1} << 53;
+    if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > most) return "a point too far";
+  }
+  return "";
+}
+
 /// A part must hold what the whole holds there.
 inline std::string check_part(const compact::DecodedScan& whole, const compact::DecodedScan& part,
                               const compact::Region& region) {
@@ -77,7 +95,7 @@ inline std::string scan_target(ByteSpan bytes) {
   ScanChunks chunks;
   std::size_t offset = kScanHeader;
   for (const FuzzChunk& chunk : read_fuzz_chunks(input)) {
-    const auto part = static_cast<ScanPart>(0x10 + chunk.type % 6);
+    const auto part = static_cast<ScanPart>(0x10 + chunk.type % 7);
     chunks.chunks.push_back({part, chunk.payload, offset + 3, true});
     offset += 3 + chunk.payload.size();
   }
@@ -97,6 +115,7 @@ inline std::string scan_target(ByteSpan bytes) {
   if (!scan && scan.error().message.empty()) return "an error without a message";
   if (scan) {
     if (std::string fault = check_planes(*scan); !fault.empty()) return fault;
+    if (std::string fault = check_points(*scan); !fault.empty()) return fault;
     if (chunks.complete && !scan->missing.empty()) return "something is missing of a whole file";
     for (const Missing& missing : scan->missing) (void)to_string(missing);
   }

@@ -10,21 +10,14 @@
 #include "compact/scan_decoder.hpp"
 #include "compact/scan_encoder.hpp"
 #include "support/clouds.hpp"
+#include "support/ray_tables.hpp"
 
 namespace curlidar::compact {
 namespace {
 
-/// Positions at a pace of slots a firing, each off by up to `jitter` slots.
-std::vector<std::uint32_t> turning(std::uint32_t slots, double pace, std::uint64_t jitter) {
-  test::Random random(7);
-  std::vector<std::uint32_t> firings;
-  for (double at = 0; at + static_cast<double>(jitter) < slots; at += pace) {
-    const auto position = static_cast<std::uint32_t>(at) +
-                          static_cast<std::uint32_t>(jitter == 0 ? 0 : random.below(jitter + 1));
-    if (firings.empty() || position > firings.back()) firings.push_back(position);
-  }
-  return firings;
-}
+using test::rows_of;
+using test::set_motion;
+using test::turning;
 
 std::vector<std::byte> firing_bytes(const std::vector<std::uint32_t>& firings,
                                     std::uint32_t slots) {
@@ -70,50 +63,11 @@ TEST(FiringList, AnyListComesBack) {
 }
 
 RowTable inline_table() {
-  test::Random random(2);
-  RowTable table;
-  RayTable& rays = table.rays.emplace();
-  rays.slots = 36000;
-  rays.firings = turning(36000, 16.67, 2);
-  rays.range_unit_q48 = 562949953421;
-  table.turn_columns = static_cast<std::uint32_t>(rays.firings.size());
-  table.elevation_shift = 8;
-  rays.azimuth_shift = 10;
-  rays.height_shift = 1;
-  rays.phase_shift = 2;
-  for (std::int32_t row = 0; row < 32; ++row) {
-    // Not in order.
-    table.elevation.push_back((((row * 7) % 32) - 16) * 65536 * 256);
-    Ray& ray = rays.rays.emplace_back();
-    ray.azimuth_offset = (row % 4 - 2) * 36000 * 1024;
-    ray.height = row * 2 - 32;
-    ray.lateral = row % 2 == 0 ? 1703 : -1703;
-    ray.range_phase = static_cast<std::int32_t>(random.below(16)) * 4 - 32;
-  }
-  return table;
+  return test::inline_rays(32, turning(36000, 16.67, 2), 36000);
 }
 
 RowTable frozen_table() {
-  RowTable table;
-  EXPECT_TRUE(use_beam_table(1, table));
-  table.rays->firings = turning(4000, 1.857, 0);
-  table.rays->range_unit_q48 = beam_table(1u)->range_unit_q48;
-  table.turn_columns = static_cast<std::uint32_t>(table.rays->firings.size());
-  return table;
-}
-
-void set_motion(RayTable& rays, bool full) {
-  rays.turn_shift = 6;
-  rays.move_shift = 3;
-  rays.motion.turn = {64 * 1001, -64 * 70003, 64 * 3000001};
-  rays.motion.move = {8 * 12345, -8 * 20, 0};
-  if (!full) return;
-  rays.motion.turn2 = {64, -64, 0};
-  rays.motion.rigid_move = {8 * 77, 0, -8 * 1234567};
-}
-
-std::uint32_t rows_of(const RowTable& table) {
-  return static_cast<std::uint32_t>(table.elevation.size());
+  return test::frozen_rays(1, turning(4000, 1.857, 0));
 }
 
 Status read_back(ByteSpan payload, const RowTable& wanted, RowTable& found) {
