@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "records/directions.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <cstdlib>
+#include <cmath>
 
 #include "base/try.hpp"
 #include "entropy/range_coder.hpp"
@@ -15,89 +17,157 @@ namespace curlidar {
 namespace {
 
 constexpr std::int64_t kRadianAngle = 683565276;  // round(2^32 / 2 pi)
-constexpr std::int32_t kMaxStep = 1 << 30;
-constexpr std::uint32_t kStepClasses = 64;
-constexpr std::uint32_t kMostClass = 11;
+constexpr std::int64_t kMaxStep = 1 << 30;
+constexpr std::int64_t kTurn = std::int64_t{1} << 32;
 
-using Pair = std::array<std::int32_t, 2>;  ///< across, up
+constexpr std::size_t kGuesses = 4;
+using Pair = std::array<std::int64_t, 2>;  ///< angles across and up
+using Guesses = std::array<std::int64_t, kGuesses>;
 
-/// Of the nearest occupied cells that came before, in steps of the cell to code.
+/// Offsets that came before, near the cell to code.
 struct Around {
-  std::int64_t left = 0, above = 0;
+  Pair left{}, second{};       ///< the last two in the row
+  Pair above{}, above_left{};  ///< the last ones in this column and in that of `left`
 };
 
-std::int32_t as_angle(std::int64_t angle) {
-  return static_cast<std::int32_t>(std::clamp<std::int64_t>(angle, INT32_MIN, INT32_MAX));
-}
+/// Errors of late, in angles.
+struct Misses {
+  std::array<std::int64_t, kGuesses> guesses{};
+  std::int64_t best = 0;
 
+  static void learn(std::int64_t& mean, std::int64_t error) {
+    mean += shift_right_round((std::abs(error) << 8) - mean, 3);
+  }
+};
+
+/// Codes offsets as whole steps beside the best of a few guesses.
 class OffsetCoder {
  public:
-  explicit OffsetCoder(std::uint32_t columns) : above_(columns), coders_{make(), make()} {}
+  explicit OffsetCoder(std::uint32_t columns) : cell_(kTurn / std::max(columns, 1u)) {}
 
-  /// Codes the offset of the next occupied cell: `offset` to the nearest step, as it is decoded.
   template <class Coder>
-  Pair code(Coder& coder, std::uint32_t column, std::int64_t step, const Pair& offset) {
-    const auto scale =
-        std::min(records::half_octave(static_cast<std::uint64_t>(step)) / 2, kStepClasses - 1);
+  Pair code(Coder& coder, const Around& around, std::int64_t step, const Pair& offset) {
     Pair decoded{};
-    std::int64_t across = 0;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const Around around{div_round(left_[i], step), div_round(above_[column][i], step)};
-      const std::int64_t value =
-          code_steps(coder, i, around, scale, across, div_round(offset[i], step));
-      decoded[i] = as_angle(std::clamp<std::int64_t>(value, -kMost, kMost) * step);
-      across = value;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const Guesses guesses = guess(axis, around);
+      const std::size_t best = best_of(axis);
+      const Expected e = expect(axis, guesses, guesses[best], step);
+      const std::int64_t wanted = div_round(offset[axis], step) - e.base;
+      const std::int64_t rest = coders_[axis].code(coder, e.contexts, e.sign, wanted);
+      decoded[axis] = angle(e.base, rest, step);
+      learn(axis, guesses, decoded[axis], rest);
     }
-    left_ = above_[column] = decoded;
     return decoded;
   }
 
  private:
-  static constexpr std::int64_t kMost = std::int64_t{1} << 32;
-  using Coder3 = records::IntegerCoder<3>;
-  static Coder3 make() {
-    return {{kStepClasses * (2 * kMostClass + 1), kStepClasses * (2 * kMostClass + 1),
-             (2 * kMostClass + 1) * (2 * kMostClass + 1)},
-            (2 * kMostClass + 1) * 3};
-  }
-  /// Sign and size of a number of steps, 0 .. 2 kMostClass.
-  static std::uint32_t signed_class(std::int64_t steps) {
-    const auto size =
-        std::min(records::half_octave(static_cast<std::uint64_t>(std::abs(steps))), kMostClass);
-    return steps < 0 ? kMostClass - size : kMostClass + size;
+  static constexpr std::uint32_t kErrors = 40;
+  static constexpr std::uint32_t kSides = 5;  ///< -2 .. 2
+  static constexpr std::uint32_t kParts = 8;  ///< of a step
+  static constexpr std::uint32_t kSizes = 12;
+
+  struct Expected {
+    std::int64_t base = 0;
+    std::array<std::uint32_t, 3> contexts{};
+    std::uint32_t sign = 0;
+  };
+
+  static records::IntegerCoder<3> make_coder() {
+    return {{kErrors * kParts, kSides * kSides * kSides * kErrors, kErrors * kSizes * kSizes},
+            kParts * kSides * kSides};
   }
 
-  template <class Coder>
-  std::int64_t code_steps(Coder& coder, std::size_t axis, const Around& around, std::uint32_t scale,
-                          std::int64_t other, std::int64_t value) {
-    const std::uint32_t left = signed_class(around.left), above = signed_class(around.above);
-    constexpr std::uint32_t classes = 2 * kMostClass + 1;
-    const std::uint32_t sign_of_above = around.above < 0 ? 0 : around.above > 0 ? 2 : 1;
-    (void)other;
-    return coders_[axis].code(
-        coder, {left * kStepClasses + scale, above * kStepClasses + scale, left * classes + above},
-        left * 3 + sign_of_above, value);
+  /// The angle within half a cell of the middle, by whole cells; along rows only.
+  std::int64_t wrapped(std::size_t axis, std::int64_t angle) const {
+    return axis == 0 ? angle - div_round(angle, cell_) * cell_ : angle;
   }
 
-  Pair left_{};
-  std::vector<Pair> above_;
-  std::array<Coder3, 2> coders_;
+  Guesses guess(std::size_t axis, const Around& a) const {
+    const std::int64_t left = a.left[axis], above = a.above[axis];
+    return {left, wrapped(axis, 2 * left - a.second[axis]),
+            wrapped(axis, left + above - a.above_left[axis]), above};
+  }
+
+  std::size_t best_of(std::size_t axis) const {
+    const auto& misses = misses_[axis].guesses;
+    return static_cast<std::size_t>(std::min_element(misses.begin(), misses.end()) -
+                                    misses.begin());
+  }
+
+  Expected expect(std::size_t axis, const Guesses& guesses, std::int64_t best,
+                  std::int64_t step) const {
+    Expected e;
+    e.base = div_round(best, step);
+    const auto beside = [&](std::int64_t guess) {
+      const std::int64_t steps = div_round(guess, step) - e.base;
+      return static_cast<std::uint32_t>(std::clamp<std::int64_t>(steps, -2, 2) + 2);
+    };
+    // Where in its step the guess lies: 0 .. kParts - 1.
+    const std::int64_t into =
+        std::clamp<std::int64_t>(best - e.base * step + step / 2, 0, step - 1);
+    const auto part = static_cast<std::uint32_t>(into * kParts / step);
+    const std::uint32_t error = error_class(misses_[axis].best, step);
+    const std::uint32_t parallel = beside(guesses[2]), left = beside(guesses[0]);
+    e.contexts = {error * kParts + part,
+                  ((parallel * kSides + left) * kSides + beside(guesses[3])) * kErrors + error,
+                  (error * kSizes + last_[axis]) * kSizes + (axis == 1 ? last_[0] : last_[1])};
+    e.sign = (part * kSides + parallel) * kSides + left;
+    return e;
+  }
+
+  /// Half octaves of sixteenths of a step; `mean` in 1/256.
+  static std::uint32_t error_class(std::int64_t mean, std::int64_t step) {
+    const auto parts = static_cast<std::uint64_t>(div_floor(mean, step)) >> 4;
+    return std::min(records::half_octave(parts), kErrors - 1);
+  }
+
+  /// Of any number of steps, within a turn.
+  static std::int64_t angle(std::int64_t base, std::int64_t rest, std::int64_t step) {
+    const std::int64_t steps = std::clamp<std::int64_t>(rest, -kTurn, kTurn) + base;
+    return std::clamp<std::int64_t>(std::clamp<std::int64_t>(steps, -kTurn, kTurn) * step,
+                                    INT32_MIN, INT32_MAX);
+  }
+
+  void learn(std::size_t axis, const Guesses& guesses, std::int64_t value, std::int64_t rest) {
+    Misses& misses = misses_[axis];
+    Misses::learn(misses.best, guesses[best_of(axis)] - value);
+    for (std::size_t i = 0; i < kGuesses; ++i) {
+      Misses::learn(misses.guesses[i], guesses[i] - value);
+    }
+    last_[axis] = std::min(records::half_octave(records::magnitude_of(rest)), kSizes - 1);
+  }
+
+  std::int64_t cell_;
+  std::array<Misses, 2> misses_{};
+  std::array<records::IntegerCoder<3>, 2> coders_{make_coder(), make_coder()};
+  std::array<std::uint32_t, 2> last_{};  ///< size classes
 };
 
-/// Codes the offsets of all occupied cells; `at(i)` takes and gives them.
-template <class Coder, class Offsets>
+Pair as_pair(const DirectionOffset& offset) {
+  return {offset.across, offset.up};
+}
+
+/// Codes the offsets of all occupied cells in place.
+template <class Coder>
 bool code_all(Coder& coder, const CellGrid& grid, std::span<const std::int32_t> ranges,
-              std::int32_t step, Offsets& offsets) {
+              std::int32_t step, std::span<DirectionOffset> offsets) {
   OffsetCoder models(grid.columns);
+  // The last offset in each column.
+  std::vector<Pair> last(grid.columns);
   std::size_t i = 0;
-  for (std::size_t cell = 0; cell < grid.occupied.size(); ++cell) {
-    if (grid.occupied[cell] == 0) continue;
-    const auto column = static_cast<std::uint32_t>(cell % grid.columns);
-    const Pair decoded = models.code(coder, column, direction_step(ranges[i], step),
-                                     {offsets[i].across, offsets[i].up});
-    offsets[i++] = {decoded[0], decoded[1]};
-    if constexpr (Coder::kDecodes) {
-      if (coder.exhausted()) return false;
+  for (std::uint32_t row = 0; row < grid.rows; ++row) {
+    Around around;
+    for (std::uint32_t column = 0; column < grid.columns; ++column) {
+      if (grid.occupied[std::size_t{row} * grid.columns + column] == 0) continue;
+      around.above = last[column];
+      const Pair decoded =
+          models.code(coder, around, direction_step(ranges[i], step), as_pair(offsets[i]));
+      offsets[i++] = {static_cast<std::int32_t>(decoded[0]), static_cast<std::int32_t>(decoded[1])};
+      around = {decoded, around.left, {}, around.above};
+      last[column] = decoded;
+      if constexpr (Coder::kDecodes) {
+        if (coder.exhausted()) return false;
+      }
     }
   }
   return true;
@@ -130,7 +200,7 @@ Result<std::vector<DirectionOffset>> decode_directions(const Chunk& chunk, const
   RangeDecoder decoder(reader.take(reader.remaining()));
   std::vector<DirectionOffset> offsets(ranges.size());
   if (!code_all(decoder, grid, ranges, static_cast<std::int32_t>(step), offsets)) {
-    return reader.corrupt("the offsets end early");
+    return reader.corrupt(fmt::format("the offsets of {} cells end early", ranges.size()));
   }
   return offsets;
 }
