@@ -24,9 +24,8 @@ Origin origin_of(const Ray& ray, const SinCos& azimuth, std::int32_t centre) {
 }
 
 bool has_origins(const RayTable& rays, std::int32_t centre) {
-  return std::any_of(rays.rays.begin(), rays.rays.end(), [&](const Ray& ray) {
-    return ray.lateral != 0 || ray.height != centre;
-  });
+  return std::any_of(rays.rays.begin(), rays.rays.end(),
+                     [&](const Ray& ray) { return ray.lateral != 0 || ray.height != centre; });
 }
 
 }  // namespace
@@ -81,7 +80,9 @@ Geometry::Geometry(std::vector<std::int32_t> elevations, const RayTable& rays,
 std::uint32_t Geometry::azimuth_of_sum(std::uint32_t sum_of_columns) const {
   const std::uint64_t sum = std::uint64_t{2} * first_column_ + sum_of_columns;
   if (!column_azimuths_.empty()) {
-    const std::uint32_t a = column_azimuths_[sum / 2], b = column_azimuths_[(sum + 1) / 2];
+    const auto lower = static_cast<std::size_t>(sum / 2),
+               upper = static_cast<std::size_t>((sum + 1) / 2);
+    const std::uint32_t a = column_azimuths_[lower], b = column_azimuths_[upper];
     return a + (b - a) / 2;
   }
   return static_cast<std::uint32_t>(0x80000000u + ((sum << 31) / turn_columns_));
