@@ -158,6 +158,7 @@ SensorCalibration calibrate_files(const Options& options) {
   settings.name = name_of(options);
   settings.start = parse_sensor(options.sensor);
   settings.motion = !options.no_motion;
+  settings.threads = options.common.threads;
   ProgressBar bar(!options.common.quiet);
   settings.progress = [&](std::string_view stage, double fraction) {
     bar.update(0, 1, stage, fraction);

@@ -20,7 +20,8 @@ struct SensorCalibrationSettings {
   std::string name = "calibrated";  ///< of the profile
   /// A profile with about the right rings, where those found in the scans are wrong.
   std::optional<SensorProfile> start;
-  bool motion = true;  ///< whether the scans may be motion-compensated
+  bool motion = true;       ///< whether the scans may be motion-compensated
+  std::size_t threads = 0;  ///< 0 = all cores; the result does not depend on it
   ProgressCallback progress;
 };
 

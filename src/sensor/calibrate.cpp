@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/parallel.hpp"
 #include "base/try.hpp"
 #include "sensor/angles.hpp"
 #include "sensor/calibrate_azimuth.hpp"
@@ -106,10 +107,11 @@ class Calibrator {
   /// Elevations and heights, and all of the motions but their yaw.
   bool fit_cones() {
     RefineSettings still;
+    still.threads = settings_.threads;
     misfit_ = refine(samples_, model_, still);
     if (settings_.motion && misfit_.up_m > kExact_m) {
       const BeamModel unmoved = model_;
-      RefineSettings moving;
+      RefineSettings moving = still;
       moving.motion = true;
       moving.most_steps = 24;
       const Misfit with_motion = refine(samples_, model_, moving);
@@ -124,23 +126,27 @@ class Calibrator {
     return misfit_.up_m < kWidestCone_m;
   }
 
-  std::vector<std::uint32_t> hints() const {
-    std::vector<std::uint32_t> out;
-    for (const RingedScan& scan : scans_) {
-      out.push_back(scan.rings->sensor.columns);
-      out.push_back(scan.rings->sensor.slots);
-    }
+  /// The slots that the scan's profile states, else all usual ones and its columns.
+  std::vector<std::vector<std::uint32_t>> candidates() const {
+    const SensorProfile& sensor = scans_.front().rings->sensor;
+    std::vector<std::vector<std::uint32_t>> out;
+    if (sensor.slots != 0) out.push_back({sensor.slots});
+    std::vector<std::uint32_t> hints;
+    for (const RingedScan& scan : scans_) hints.push_back(scan.rings->sensor.columns);
+    out.push_back(calibration::slot_candidates(hints));
     return out;
   }
 
   /// Slots, and where they are: from the first scan that shows them.
   bool fit_encoder() {
-    const auto candidates = calibration::slot_candidates(hints());
     std::optional<calibration::Encoder> encoder;
     std::size_t first = 0;
-    for (; first < std::min<std::size_t>(3, samples_.size()) && !encoder; ++first) {
-      all_[first].motion = samples_[first].motion;
-      encoder = find_encoder(all_[first], ring_count(), candidates, moving_);
+    for (const auto& slots : candidates()) {
+      for (first = 0; first < std::min<std::size_t>(3, samples_.size()) && !encoder; ++first) {
+        all_[first].motion = samples_[first].motion;
+        encoder = find_encoder(all_[first], ring_count(), slots, moving_);
+      }
+      if (encoder) break;
     }
     if (!encoder) return false;
     std::swap(samples_[0], samples_[first - 1]);
@@ -154,15 +160,17 @@ class Calibrator {
     settings.motion = moving_;
     refine(std::span(samples_).first(1), model_, settings);
     if (!moving_) return true;
-    for (ScanSample& sample : std::span(samples_).subspan(1)) {
+    parallel_for(samples_.size() - 1, settings_.threads, [&](std::size_t i) {
+      ScanSample& sample = samples_[i + 1];
       const auto yaw = find_yaw(sample, model_);
       if (yaw) sample.motion.turn.z = yaw->yaw;
-    }
+    });
     return true;
   }
 
   void refine_all() {
     RefineSettings settings;
+    settings.threads = settings_.threads;
     settings.azimuth = true;
     settings.motion = moving_;
     settings.most_steps = 16;

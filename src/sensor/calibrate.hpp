@@ -24,7 +24,8 @@ struct RingedScan {
 };
 
 struct CalibrateSettings {
-  bool motion = true;  ///< whether the scans may be motion-compensated
+  bool motion = true;       ///< whether the scans may be motion-compensated
+  std::size_t threads = 0;  ///< 0 = all cores; the result does not depend on it
   ProgressCallback progress;
 };
 

@@ -15,10 +15,15 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 /// No beam is further from the spin axis than this.
 constexpr double kMostLateral_m = 0.12;
-/// Yaw of a turn: 1.2 radians a second at ten turns a second.
-constexpr double kMostYaw = 0.12;
+/// Yaw of a turn, two radians a second at ten turns a second. With a yaw of 2 pi x a turn's slots
+/// seem to be 1 + x times as many: that 4000 are not 4096 shows only below half of their distance.
+constexpr double kMostYaw = 0.2, kMostYawOfUnknown = 0.07;
 /// Resultants above this are no chance, of a hundred returns or more.
 constexpr double kLeastResultant = 0.35;
+/// Beams with fewer returns say nothing.
+constexpr std::size_t kFewest = 24;
+/// Enough returns of a beam for a search over all lateral offsets.
+constexpr std::size_t kFew = 300;
 /// Resultants above this leave no doubt.
 constexpr double kClearResultant = 0.6;
 /// With finer encoders the search for the yaw leaves lateral offsets out: it would take too long.
@@ -35,11 +40,31 @@ double weight_of(double distance) {
   return std::min(distance, 20.0);
 }
 
-void append(Arc& arc, const Vec3& p) {
-  const double distance = std::hypot(p.x, p.y);
-  arc.azimuth.push_back(azimuth_of(p) + std::numbers::pi);
-  arc.inverse.push_back(1 / distance);
-  arc.weight.push_back(weight_of(distance));
+/// A return, and what azimuth it has if the motion had another yaw.
+class Turned {
+ public:
+  Turned(const MotionTwist& motion, const Vec3& moved) : yaw_(motion.turn.z) {
+    const Unmoved unmoved = undo_motion(motion, moved);
+    const Vec3& p = unmoved.point;
+    distance_ = std::hypot(p.x, p.y);
+    s_ = unmoved.s;
+    // The azimuth decides how much of the motion is undone, and that moves the azimuth.
+    const Vec3 by_s = point_by_turn(motion, p, s_);
+    stiffness_ = kTurn - (p.x * by_s.y - p.y * by_s.x) / (distance_ * distance_);
+  }
+
+  double distance() const { return distance_; }
+  /// First order in the displacement that changes with s, exact in the rotation.
+  double azimuth(double yaw) const { return kTurn * s_ * stiffness_ / (stiffness_ + yaw - yaw_); }
+
+ private:
+  double yaw_, distance_, s_, stiffness_;
+};
+
+void append(Arc& arc, const Turned& point, double yaw) {
+  arc.azimuth.push_back(point.azimuth(yaw) + std::numbers::pi);
+  arc.inverse.push_back(1 / point.distance());
+  arc.weight.push_back(weight_of(point.distance()));
 }
 
 /// The step of lateral offsets that turns the phase of a near return by half a radian.
@@ -48,6 +73,18 @@ double lateral_step(const Arc& arc, std::uint32_t slots) {
   const auto near = inverse.begin() + static_cast<std::ptrdiff_t>(inverse.size() * 9 / 10);
   std::nth_element(inverse.begin(), near, inverse.end());
   return std::clamp(0.5 / (slots * *near), 1e-5, 0.01);
+}
+
+/// About `count` of the returns.
+Arc every(const Arc& arc, std::size_t count) {
+  const std::size_t stride = std::max<std::size_t>(1, arc.size() / count);
+  Arc out;
+  for (std::size_t i = 0; i < arc.size(); i += stride) {
+    out.azimuth.push_back(arc.azimuth[i]);
+    out.inverse.push_back(arc.inverse[i]);
+    out.weight.push_back(arc.weight[i]);
+  }
+  return out;
 }
 
 struct Lattice {
@@ -85,43 +122,41 @@ Lattice scan_laterals(const Arc& arc, std::uint32_t slots, double middle, double
   return best;
 }
 
-/// Returns of the beams that see most, thinned, before and after undoing a motion.
+/// Returns of the beams that see most, thinned, and where they are with any yaw.
 class Probe {
  public:
-  Probe(const ScanSample& sample, std::size_t rings, std::size_t beams, std::size_t returns)
-      : motion_(sample.motion) {
+  Probe(const ScanSample& sample, std::size_t rings, std::size_t beams, std::size_t returns) {
     std::vector<std::size_t> count(rings, 0), order(rings), place(rings, rings);
     for (const std::uint16_t ring : sample.ring) ++count[ring];
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return count[a] > count[b]; });
-    moved_.resize(std::min(beams, rings));
-    for (std::size_t i = 0; i < moved_.size(); ++i) place[order[i]] = i;
+    beams_.resize(std::min(beams, rings));
+    for (std::size_t i = 0; i < beams_.size(); ++i) place[order[i]] = i;
     std::vector<std::size_t> seen(rings, 0);
     for (std::size_t i = 0; i < sample.size(); ++i) {
       const std::size_t ring = sample.ring[i];
       if (place[ring] == rings) continue;
       const std::size_t stride = std::max<std::size_t>(1, count[ring] / returns);
-      if (seen[ring]++ % stride == 0) moved_[place[ring]].push_back(sample.moved[i]);
+      if (seen[ring]++ % stride == 0) {
+        beams_[place[ring]].emplace_back(sample.motion, sample.moved[i]);
+      }
     }
-    std::erase_if(moved_, [](const auto& beam) { return beam.size() < 24; });
+    std::erase_if(beams_, [](const auto& beam) { return beam.size() < kFewest; });
   }
 
-  bool empty() const { return moved_.empty(); }
+  bool empty() const { return beams_.empty(); }
 
   std::vector<Arc> arcs(double yaw) const {
-    MotionTwist motion = motion_;
-    motion.turn.z = yaw;
-    std::vector<Arc> out(moved_.size());
-    for (std::size_t i = 0; i < moved_.size(); ++i) {
-      for (const Vec3& p : moved_[i]) append(out[i], undo(motion, p));
+    std::vector<Arc> out(beams_.size());
+    for (std::size_t i = 0; i < beams_.size(); ++i) {
+      for (const Turned& point : beams_[i]) append(out[i], point, yaw);
     }
     return out;
   }
 
  private:
-  MotionTwist motion_;
-  std::vector<std::vector<Vec3>> moved_;  // of each probed beam
+  std::vector<std::vector<Turned>> beams_;
 };
 
 /// Steps of azimuth between near neighbours of a beam, which neither the yaw of a motion nor the
@@ -184,12 +219,12 @@ double mean_resultant(const std::vector<Arc>& arcs, std::uint32_t slots, double 
 
 /// The yaw with the best resultant, first coarse, then ever finer.
 template <class Score>
-Encoder scan_yaws(std::uint32_t slots, const Score& score) {
+Encoder scan_yaws(std::uint32_t slots, double most, const Score& score) {
   // A step turns the phase of a return half a turn away by one radian.
   double step = 2.0 / slots;
   Encoder best{slots, 0, 0};
   double middle = 0;
-  auto half = static_cast<int>(std::ceil(kMostYaw / step));
+  auto half = static_cast<int>(std::ceil(most / step));
   for (int level = 0; level < 4; ++level) {
     for (int k = -half; k <= half; ++k) {
       const double yaw = middle + k * step;
@@ -237,10 +272,12 @@ std::optional<Encoder> find_encoder(const ScanSample& sample, std::size_t rings,
   Encoder best{0, sample.motion.turn.z, 0};
   if (search_yaw) {
     order = by_steps(StepProbe(sample, rings), order);
+    const double most_yaw = candidates.size() == 1 ? kMostYaw : kMostYawOfUnknown;
     for (const std::uint32_t slots : order) {
       const double most_lateral = slots <= kMostSlotsForBoth ? kMostLateral_m / 2 : 0;
-      const Encoder found = scan_yaws(
-          slots, [&](double yaw) { return mean_resultant(probe.arcs(yaw), slots, most_lateral); });
+      const Encoder found = scan_yaws(slots, most_yaw, [&](double yaw) {
+        return mean_resultant(probe.arcs(yaw), slots, most_lateral);
+      });
       if (found.resultant > best.resultant) best = found;
       if (best.resultant > kClearResultant) break;
     }
@@ -264,17 +301,18 @@ std::optional<Encoder> find_encoder(const ScanSample& sample, std::size_t rings,
 
 std::optional<Encoder> find_yaw(const ScanSample& sample, const BeamModel& model) {
   const std::size_t stride = std::max<std::size_t>(1, sample.size() / 2000);
-  const Encoder best = scan_yaws(model.slots, [&](double yaw) {
-    MotionTwist motion = sample.motion;
-    motion.turn.z = yaw;
+  std::vector<std::pair<Turned, double>> points;  // and the offset of its beam from the encoder
+  for (std::size_t i = 0; i < sample.size(); i += stride) {
+    const Beam& beam = model.beams[sample.ring[i]];
+    const Turned point(sample.motion, sample.moved[i]);
+    points.emplace_back(point, beam.lateral_m / point.distance() + beam.azimuth_offset);
+  }
+  const Encoder best = scan_yaws(model.slots, kMostYaw, [&](double yaw) {
     std::complex<double> sum = 0;
     double total = 0;
-    for (std::size_t i = 0; i < sample.size(); i += stride) {
-      const Beam& beam = model.beams[sample.ring[i]];
-      const Vec3 p = undo(motion, sample.moved[i]);
-      const double distance = std::hypot(p.x, p.y), weight = weight_of(distance);
-      const double encoder = azimuth_of(p) - beam.lateral_m / distance - beam.azimuth_offset;
-      sum += std::polar(weight, model.slots * encoder);
+    for (const auto& [point, offset] : points) {
+      const double weight = weight_of(point.distance());
+      sum += std::polar(weight, model.slots * (point.azimuth(yaw) - offset));
       total += weight;
     }
     return std::abs(sum) / std::max(total, 1e-9);
@@ -286,14 +324,14 @@ std::optional<Encoder> find_yaw(const ScanSample& sample, const BeamModel& model
 void start_azimuths(const ScanSample& sample, BeamModel& model) {
   std::vector<Arc> arcs(model.beams.size());
   for (std::size_t i = 0; i < sample.size(); ++i) {
-    append(arcs[sample.ring[i]], undo(sample.motion, sample.moved[i]));
+    append(arcs[sample.ring[i]], {sample.motion, sample.moved[i]}, sample.motion.turn.z);
   }
   for (std::size_t ring = 0; ring < arcs.size(); ++ring) {
     const Arc& arc = arcs[ring];
-    if (arc.size() < 24) continue;
+    if (arc.size() < kFewest) continue;
     const double step = lateral_step(arc, model.slots);
-    Lattice found = scan_laterals(arc, model.slots, 0, kMostLateral_m, step);
-    found = scan_laterals(arc, model.slots, found.lateral, step, step / 8);
+    Lattice found = scan_laterals(every(arc, kFew), model.slots, 0, kMostLateral_m, step);
+    found = scan_laterals(arc, model.slots, found.lateral, 2 * step, step / 8);
     model.beams[ring].lateral_m = found.lateral;
     model.beams[ring].azimuth_offset = found.offset;
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/parallel.hpp"
 #include "sensor/returns.hpp"
 
 namespace curlidar::calibration {
@@ -53,31 +54,60 @@ Residual residual_of(const BeamModel& model, std::size_t ring, const Vec3& p, bo
   return r;
 }
 
-/// The normal equations, one beam at a time on one side and one motion at a time on the other.
-struct Normal {
-  Normal(std::size_t beams, std::size_t scans)
-      : scan_count(scans),
-        beam(beams, BeamMatrix::Zero()),
-        beam_right(beams, BeamVector::Zero()),
-        mixed(beams * scans, MixedMatrix::Zero()),
-        motion(scans, MotionMatrix::Zero()),
-        motion_right(scans, MotionVector::Zero()) {}
+/// How the distances of a point from its place follow the point.
+struct Gradient {
+  Vec3 up, across;
+};
 
-  void add(std::size_t ring, std::size_t scan, const BeamVector& by_beam,
-           const MotionVector& by_motion, double residual, double weight) {
+Gradient gradient_of(const Beam& beam, const Vec3& p) {
+  const double distance = std::max(std::hypot(p.x, p.y), 1e-3);
+  const double u = std::max(along(beam, distance), 1e-3);
+  const double c = std::cos(beam.elevation), s = std::sin(beam.elevation);
+  const double aside = beam.lateral_m / (distance * u);
+  return {{-s * p.x / u, -s * p.y / u, c},
+          {-p.y / distance + aside * p.x, p.x / distance + aside * p.y, 0}};
+}
+
+/// How an undone point, at s of a turn, follows the six numbers of its motion: directly, and
+/// because s is that of the undone point itself.
+std::array<Vec3, kOfMotion> slopes_of(const MotionTwist& motion, const Vec3& p, double s) {
+  const Vec3 back = motion.turn * -s;
+  const Vec3 by_s = point_by_turn(motion, p, s);
+  const double square = std::max(p.x * p.x + p.y * p.y, 1e-6);
+  const Vec3 s_by_point = Vec3{-p.y, p.x, 0} * (1 / (2 * std::numbers::pi * square));
+  const double loop = 1 - dot(s_by_point, by_s);
+  std::array<Vec3, kOfMotion> out;
+  constexpr std::array<Vec3, 3> kAxes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    out[k] = cross(kAxes[k], p) * -s;
+    out[k + 3] = rotate(back, kAxes[k]) * -s;
+  }
+  for (Vec3& slope : out) slope = slope + by_s * (dot(s_by_point, slope) / loop);
+  return out;
+}
+
+/// What one scan adds to the normal equations: sums for each beam, for the scan's motion, and
+/// between them.
+struct Normal {
+  explicit Normal(std::size_t beams)
+      : beam(beams, BeamMatrix::Zero()),
+        beam_right(beams, BeamVector::Zero()),
+        mixed(beams, MixedMatrix::Zero()) {}
+
+  void add(std::size_t ring, const BeamVector& by_beam, const MotionVector& by_motion,
+           double residual, double weight) {
     beam[ring].noalias() += weight * by_beam * by_beam.transpose();
     beam_right[ring].noalias() += weight * residual * by_beam;
-    mixed[ring * scan_count + scan].noalias() += weight * by_beam * by_motion.transpose();
-    motion[scan].noalias() += weight * by_motion * by_motion.transpose();
-    motion_right[scan].noalias() += weight * residual * by_motion;
+    mixed[ring].noalias() += weight * by_beam * by_motion.transpose();
+    motion.noalias() += weight * by_motion * by_motion.transpose();
+    motion_right.noalias() += weight * residual * by_motion;
   }
 
-  std::size_t scan_count;
   std::vector<BeamMatrix> beam;
   std::vector<BeamVector> beam_right;
-  std::vector<MixedMatrix> mixed;  // [ring * scan_count + scan]
-  std::vector<MotionMatrix> motion;
-  std::vector<MotionVector> motion_right;
+  std::vector<MixedMatrix> mixed;
+  MotionMatrix motion = MotionMatrix::Zero();
+  MotionVector motion_right = MotionVector::Zero();
 };
 
 /// Parameters that no residual moves stay where they are.
@@ -95,39 +125,45 @@ struct Step {
 };
 
 /// Solves for the motions first (the Schur complement), then for each beam.
-Step solve(Normal& normal) {
-  const std::size_t scans = normal.scan_count;
-  const auto size = static_cast<Eigen::Index>(scans) * kOfMotion;
+Step solve(std::vector<Normal>& scans) {
+  const std::size_t beams = scans.front().beam.size();
+  const auto size = static_cast<Eigen::Index>(scans.size()) * kOfMotion;
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
   Eigen::VectorXd right(size);
   const auto at = [](std::size_t scan) { return static_cast<Eigen::Index>(scan) * kOfMotion; };
-  for (std::size_t s = 0; s < scans; ++s) {
-    hold_unmoved(normal.motion[s]);
-    matrix.block<kOfMotion, kOfMotion>(at(s), at(s)) = normal.motion[s];
-    right.segment<kOfMotion>(at(s)) = normal.motion_right[s];
+  for (std::size_t s = 0; s < scans.size(); ++s) {
+    hold_unmoved(scans[s].motion);
+    matrix.block<kOfMotion, kOfMotion>(at(s), at(s)) = scans[s].motion;
+    right.segment<kOfMotion>(at(s)) = scans[s].motion_right;
   }
   std::vector<Eigen::LDLT<BeamMatrix>> solvers;
-  for (std::size_t ring = 0; ring < normal.beam.size(); ++ring) {
-    hold_unmoved(normal.beam[ring]);
-    solvers.emplace_back(normal.beam[ring]);
-    const MixedMatrix* mixed = &normal.mixed[ring * scans];
-    for (std::size_t s = 0; s < scans; ++s) {
-      const MixedMatrix solved = solvers.back().solve(mixed[s]);
-      right.segment<kOfMotion>(at(s)).noalias() -= solved.transpose() * normal.beam_right[ring];
-      for (std::size_t t = 0; t < scans; ++t) {
-        matrix.block<kOfMotion, kOfMotion>(at(s), at(t)).noalias() -= solved.transpose() * mixed[t];
+  std::vector<BeamVector> rests;
+  for (std::size_t ring = 0; ring < beams; ++ring) {
+    BeamMatrix all = BeamMatrix::Zero();
+    rests.push_back(BeamVector::Zero());
+    for (const Normal& scan : scans) {
+      all += scan.beam[ring];
+      rests.back() += scan.beam_right[ring];
+    }
+    hold_unmoved(all);
+    solvers.emplace_back(all);
+    for (std::size_t s = 0; s < scans.size(); ++s) {
+      const MixedMatrix solved = solvers.back().solve(scans[s].mixed[ring]);
+      right.segment<kOfMotion>(at(s)).noalias() -= solved.transpose() * rests.back();
+      for (std::size_t t = 0; t < scans.size(); ++t) {
+        matrix.block<kOfMotion, kOfMotion>(at(s), at(t)).noalias() -=
+            solved.transpose() * scans[t].mixed[ring];
       }
     }
   }
   Step step;
   step.motions = matrix.ldlt().solve(right);
   if (!step.motions.allFinite()) step.motions.setZero();
-  for (std::size_t ring = 0; ring < normal.beam.size(); ++ring) {
-    BeamVector rest = normal.beam_right[ring];
-    for (std::size_t s = 0; s < scans; ++s) {
-      rest.noalias() -= normal.mixed[ring * scans + s] * step.motions.segment<kOfMotion>(at(s));
+  for (std::size_t ring = 0; ring < beams; ++ring) {
+    for (std::size_t s = 0; s < scans.size(); ++s) {
+      rests[ring].noalias() -= scans[s].mixed[ring] * step.motions.segment<kOfMotion>(at(s));
     }
-    step.beams.push_back(solvers[ring].solve(rest));
+    step.beams.push_back(solvers[ring].solve(rests[ring]));
     if (!step.beams.back().allFinite()) step.beams.back().setZero();
   }
   return step;
@@ -139,31 +175,38 @@ class Problem {
   Problem(std::span<ScanSample> samples, BeamModel& model, const RefineSettings& settings)
       : samples_(samples), model_(model), settings_(settings) {
     for (const ScanSample& sample : samples) {
-      std::vector<Vec3>& undone = undone_.emplace_back();
+      std::vector<Unmoved>& undone = undone_.emplace_back();
       undone.resize(sample.size());
     }
   }
 
   /// Median residuals with the parameters as they are.
   Misfit measure() {
-    std::vector<double> up, across;
-    for (std::size_t s = 0; s < samples_.size(); ++s) {
+    std::vector<std::vector<double>> ups(samples_.size()), acrosses(samples_.size());
+    parallel_for(samples_.size(), settings_.threads, [&](std::size_t s) {
       const ScanSample& sample = samples_[s];
       for (std::size_t i = 0; i < sample.size(); ++i) {
-        undone_[s][i] = undo(sample.motion, sample.moved[i]);
-        const Residual r = residual_of(model_, sample.ring[i], undone_[s][i], settings_.azimuth);
-        up.push_back(std::abs(r.up));
-        across.push_back(std::abs(r.across));
+        undone_[s][i] = undo_motion(sample.motion, sample.moved[i]);
+        const Residual r =
+            residual_of(model_, sample.ring[i], undone_[s][i].point, settings_.azimuth);
+        ups[s].push_back(std::abs(r.up));
+        acrosses[s].push_back(std::abs(r.across));
       }
+    });
+    std::vector<double> up, across;
+    for (std::size_t s = 0; s < samples_.size(); ++s) {
+      up.insert(up.end(), ups[s].begin(), ups[s].end());
+      across.insert(across.end(), acrosses[s].begin(), acrosses[s].end());
     }
     if (up.empty()) return {};
     return {median(up), settings_.azimuth ? median(across) : 0};
   }
 
   void step(double up_scale, double across_scale) {
-    Normal normal(model_.beams.size(), samples_.size());
-    for (std::size_t s = 0; s < samples_.size(); ++s) accumulate(normal, s, up_scale, across_scale);
-    const Step step = solve(normal);
+    std::vector<Normal> scans(samples_.size(), Normal(model_.beams.size()));
+    parallel_for(samples_.size(), settings_.threads,
+                 [&](std::size_t s) { accumulate(scans[s], s, up_scale, across_scale); });
+    const Step step = solve(scans);
     for (std::size_t ring = 0; ring < model_.beams.size(); ++ring) {
       Beam& beam = model_.beams[ring];
       beam.elevation += step.beams[ring][0];
@@ -183,29 +226,23 @@ class Problem {
  private:
   void accumulate(Normal& normal, std::size_t s, double up_scale, double across_scale) const {
     const ScanSample& sample = samples_[s];
-    constexpr double kDelta = 1e-5;
-    std::array<MotionTwist, kOfMotion> shifted;
-    for (int i = 0; i < kOfMotion; ++i) {
-      shifted[static_cast<std::size_t>(i)] = sample.motion;
-      component(shifted[static_cast<std::size_t>(i)], i) += kDelta;
-    }
     for (std::size_t i = 0; i < sample.size(); ++i) {
       const std::size_t ring = sample.ring[i];
-      const Vec3& p = undone_[s][i];
+      const Vec3& p = undone_[s][i].point;
       const Residual r = residual_of(model_, ring, p, settings_.azimuth);
       MotionVector up_by_motion = MotionVector::Zero(), across_by_motion = MotionVector::Zero();
       if (settings_.motion) {
-        for (int k = 0; k < kOfMotion; ++k) {
-          if (!settings_.azimuth && k == 2) continue;
-          const Vec3 q = undo_motion(shifted[static_cast<std::size_t>(k)], sample.moved[i]).point;
-          const Residual moved = residual_of(model_, ring, q, settings_.azimuth);
-          up_by_motion[k] = (moved.up - r.up) / kDelta;
-          across_by_motion[k] = (moved.across - r.across) / kDelta;
+        const Gradient gradient = gradient_of(model_.beams[ring], p);
+        const auto slopes = slopes_of(sample.motion, p, undone_[s][i].s);
+        for (std::size_t k = 0; k < slopes.size(); ++k) {
+          if (!settings_.azimuth && k == 2) continue;  // the yaw does not show
+          up_by_motion[static_cast<Eigen::Index>(k)] = dot(gradient.up, slopes[k]);
+          across_by_motion[static_cast<Eigen::Index>(k)] = dot(gradient.across, slopes[k]);
         }
       }
-      add_up(normal, ring, s, p, r.up, up_by_motion, up_scale);
+      add_up(normal, ring, p, r.up, up_by_motion, up_scale);
       if (settings_.azimuth) {
-        add_across(normal, ring, s, p, r.across, across_by_motion, across_scale);
+        add_across(normal, ring, p, r.across, across_by_motion, across_scale);
       }
     }
   }
@@ -217,7 +254,7 @@ class Problem {
     return w * w;
   }
 
-  void add_up(Normal& normal, std::size_t ring, std::size_t scan, const Vec3& p, double residual,
+  void add_up(Normal& normal, std::size_t ring, const Vec3& p, double residual,
               const MotionVector& by_motion, double scale) const {
     const Beam& beam = model_.beams[ring];
     const double c = std::cos(beam.elevation), s = std::sin(beam.elevation);
@@ -225,11 +262,11 @@ class Problem {
     BeamVector by_beam = BeamVector::Zero();
     by_beam[0] = -(p.z - beam.height_m) * s - u * c;
     by_beam[1] = -c;
-    normal.add(ring, scan, by_beam, by_motion, -residual, weight_of(residual, scale));
+    normal.add(ring, by_beam, by_motion, -residual, weight_of(residual, scale));
   }
 
-  void add_across(Normal& normal, std::size_t ring, std::size_t scan, const Vec3& p,
-                  double residual, const MotionVector& by_motion, double scale) const {
+  void add_across(Normal& normal, std::size_t ring, const Vec3& p, double residual,
+                  const MotionVector& by_motion, double scale) const {
     const Beam& beam = model_.beams[ring];
     const double distance = std::hypot(p.x, p.y);
     BeamVector by_beam = BeamVector::Zero();
@@ -238,14 +275,14 @@ class Problem {
     // Where half a pitch is not well above the scale, the nearest position may be the wrong one.
     const double half_pitch = std::numbers::pi / model_.slots * distance;
     const double ambiguity = std::min(1.0, half_pitch / (4 * scale));
-    normal.add(ring, scan, by_beam, by_motion, -residual,
+    normal.add(ring, by_beam, by_motion, -residual,
                weight_of(residual, scale) * ambiguity * ambiguity);
   }
 
   std::span<ScanSample> samples_;
   BeamModel& model_;
   const RefineSettings& settings_;
-  std::vector<std::vector<Vec3>> undone_;
+  std::vector<std::vector<Unmoved>> undone_;
 };
 
 }  // namespace

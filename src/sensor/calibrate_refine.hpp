@@ -2,6 +2,7 @@
 // Least squares over beams and motions together.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct RefineSettings {
   bool motion = false;   ///< move the motions too; without azimuths all but the yaw
   int most_steps = 12;
   double start_scale_m = 0.5;  ///< residuals well above this count little at first
+  std::size_t threads = 0;     ///< at most one for each scan; 0 = all cores
 };
 
 /// Median absolute distances of returns from their places, metres.

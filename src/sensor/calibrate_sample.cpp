@@ -61,6 +61,10 @@ Vec3 undo(const MotionTwist& motion, const Vec3& moved) {
   return motion.none() ? moved : undo_motion(motion, moved).point;
 }
 
+Vec3 point_by_turn(const MotionTwist& motion, const Vec3& point, double s) {
+  return (cross(motion.turn, point) + rotate(motion.turn * -s, motion.move)) * -1;
+}
+
 double wrapped(double angle) {
   return std::remainder(angle, 2 * std::numbers::pi);
 }

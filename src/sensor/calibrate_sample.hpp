@@ -34,6 +34,9 @@ ScanSample thin(const ScanSample& sample, std::size_t rings, std::size_t limit);
 /// A motion that leaves points alone costs nothing to undo.
 Vec3 undo(const MotionTwist& motion, const Vec3& moved);
 
+/// How a point undone at s of a turn would go if s were larger.
+Vec3 point_by_turn(const MotionTwist& motion, const Vec3& point, double s);
+
 /// An azimuth brought into [-pi, pi].
 double wrapped(double angle);
 

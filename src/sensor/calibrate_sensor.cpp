@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/parallel.hpp"
 #include "base/try.hpp"
 #include "curlidar/calibrate.hpp"
 #include "sensor/calibrate.hpp"
@@ -66,6 +67,7 @@ Result<SensorCalibration> calibrate_sensor(std::span<const Cloud> clouds,
   for (std::size_t i = 0; i < clouds.size(); ++i) scans.push_back({&clouds[i], &rings[i]});
   CalibrateSettings inner;
   inner.motion = settings.motion;
+  inner.threads = settings.threads;
   inner.progress = [&](std::string_view stage, double fraction) { report(stage, 0.7 * fraction); };
   CURLIDAR_TRY_ASSIGN(calibration, calibrate(scans, inner));
   if (!calibration) {
@@ -81,16 +83,19 @@ Result<SensorCalibration> calibrate_sensor(std::span<const Cloud> clouds,
       fmt::format("{}, calibrated from {} scan{}", rings.front().sensor.description, clouds.size(),
                   clouds.size() == 1 ? "" : "s");
   out.sensor = std::move(sensor);
+  report("lattice", 0.7);
   LatticeSettings lattice;
   lattice.motion = settings.motion;
-  for (std::size_t i = 0; i < clouds.size(); ++i) {
-    report("lattice", 0.7 + 0.3 * static_cast<double>(i) / static_cast<double>(clouds.size()));
-    CURLIDAR_TRY_ASSIGN(
-        fit, find_lattice(clouds[i], rings[i], std::span(&calibration->model, 1), lattice));
-    out.scans.push_back(fit ? describe(*fit) : ScanOnLattice{});
-    out.scans.back().returns = rings[i].returns;
-    out.sensor.min_range_m = std::min(out.sensor.min_range_m, rings[i].sensor.min_range_m);
-    out.sensor.max_range_m = std::max(out.sensor.max_range_m, rings[i].sensor.max_range_m);
+  out.scans.resize(clouds.size());
+  parallel_for(clouds.size(), settings.threads, [&](std::size_t i) {
+    // Its only error, rings of another cloud, cannot be.
+    const auto fit = find_lattice(clouds[i], rings[i], std::span(&calibration->model, 1), lattice);
+    if (fit && *fit) out.scans[i] = describe(**fit);
+    out.scans[i].returns = rings[i].returns;
+  });
+  for (const Detection& found : rings) {
+    out.sensor.min_range_m = std::min(out.sensor.min_range_m, found.sensor.min_range_m);
+    out.sensor.max_range_m = std::max(out.sensor.max_range_m, found.sensor.max_range_m);
   }
   const auto on_lattice = [](const ScanOnLattice& scan) { return scan.placed > 0; };
   if (std::none_of(out.scans.begin(), out.scans.end(), on_lattice)) {

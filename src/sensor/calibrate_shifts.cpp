@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace curlidar::calibration {
@@ -87,8 +88,12 @@ std::optional<std::vector<std::int64_t>> shifts_from_columns(const ScanSample& s
 /// How many returns are at positions where others fired, by the shift of their ring.
 class Alignment {
  public:
-  Alignment(std::span<const Positions> scans, std::uint32_t slots)
-      : scans_(scans), slots_(slots), most_(static_cast<std::int64_t>(slots * kMostShift)) {}
+  Alignment(std::span<const Positions> scans, std::uint32_t slots) : scans_(scans), slots_(slots) {
+    const auto most = static_cast<std::int64_t>(slots * kMostShift);
+    std::vector<std::int64_t> all;
+    for (std::int64_t shift = -most; shift <= most; ++shift) all.push_back(shift);
+    candidates_.assign(scans.front().of_ring.size(), all);
+  }
 
   std::vector<std::int64_t> solve() {
     const std::size_t rings = scans_.front().of_ring.size();
@@ -106,9 +111,9 @@ class Alignment {
       for (auto& scan : fired_) {
         for (std::uint8_t& mark : scan) mark = mark >= (round > 0 ? threshold(rings) : 1) ? 1 : 0;
       }
-      for (std::size_t ring = 0; ring < rings; ++ring) shifts[ring] = best_shift(ring);
-      const std::int64_t zero = shifts[first];
-      for (std::int64_t& shift : shifts) shift -= zero;
+      for (std::size_t ring = 0; ring < rings; ++ring) {
+        if (ring != first) shifts[ring] = best_shift(ring);
+      }
     }
     return shifts;
   }
@@ -134,17 +139,25 @@ class Alignment {
       }
     }
   }
-  /// The best shift; 0 where that does about as well, as when lasers fire at every position.
-  std::int64_t best_shift(std::size_t ring) const {
+  /// The best of the ring's candidates, of which only good ones are kept; 0 where that does about
+  /// as well, as when lasers fire at every position.
+  std::int64_t best_shift(std::size_t ring) {
     const std::size_t total = count(ring);
     if (total == 0) return 0;
+    std::vector<std::pair<std::size_t, std::int64_t>> scored;
+    for (const std::int64_t shift : candidates_[ring]) {
+      scored.emplace_back(hits_at(ring, shift), shift);
+    }
     std::size_t best = hits_at(ring, 0) + total / 50;
     std::int64_t chosen = 0;
-    for (std::int64_t shift = -most_; shift <= most_; ++shift) {
-      const std::size_t hits = hits_at(ring, shift);
+    for (const auto& [hits, shift] : scored) {
       if (hits <= best) continue;
       best = hits;
       chosen = shift;
+    }
+    candidates_[ring].clear();
+    for (const auto& [hits, shift] : scored) {
+      if (5 * hits >= 4 * best) candidates_[ring].push_back(shift);
     }
     return chosen;
   }
@@ -163,8 +176,8 @@ class Alignment {
 
   std::span<const Positions> scans_;
   std::uint32_t slots_;
-  std::int64_t most_;
-  std::vector<std::vector<std::uint8_t>> fired_;  // [scan][position]
+  std::vector<std::vector<std::int64_t>> candidates_;  // [ring]
+  std::vector<std::vector<std::uint8_t>> fired_;       // [scan][position]
 };
 
 }  // namespace

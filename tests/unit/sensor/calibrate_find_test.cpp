@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sensor/calibrate.hpp"
 #include "unit/sensor/lattice_scans.hpp"
@@ -60,10 +61,12 @@ LatticeScan unknown(const BeamModel& model, const LatticeScanOptions& options) {
   return scan;
 }
 
-Calibration found(const std::vector<LatticeScan>& scans) {
+Calibration found(const std::vector<LatticeScan>& scans, std::size_t threads = 1) {
   std::vector<RingedScan> ringed;
   for (const LatticeScan& scan : scans) ringed.push_back({&scan.cloud, &scan.rings});
-  const auto calibration = calibrate(ringed);
+  CalibrateSettings settings;
+  settings.threads = threads;
+  const auto calibration = calibrate(ringed, settings);
   EXPECT_TRUE(calibration) << (calibration ? "" : calibration.error().message);
   if (!calibration || !*calibration) {
     ADD_FAILURE() << "no lattice";
@@ -115,16 +118,20 @@ TEST(Calibrate, FindsEveryBeamOfAScan) {
 
 TEST(Calibrate, FindsBeamsAndMotionTogether) {
   const BeamModel truth = two_blocks(24);
-  LatticeScanOptions options;
-  options.step = 1;
-  options.motion.turn = {.002, -.0015, .03};
-  options.motion.move = {-1.2, .03, -.01};
-  const LatticeScan scan = unknown(truth, options);
-  const Calibration calibration = found({scan});
-  EXPECT_NEAR(norm(calibration.motions.at(0).turn - options.motion.turn), 0, 3e-5);
-  EXPECT_NEAR(norm(calibration.motions.at(0).move - options.motion.move), 0, 5e-4);
-  expect_beams(calibration.model, truth, 3e-4, 5e-5);
-  expect_placed(scan, calibration.model, firings_of_turn());
+  for (const auto& [speed, yaw] : {std::pair{1.2, .03}, std::pair{2.5, -.11}}) {
+    LatticeScanOptions options;
+    options.step = 1;
+    options.motion.turn = {.002, -.0015, yaw};
+    options.motion.move = {-speed, .03, -.01};
+    LatticeScan scan = unknown(truth, options);
+    // 4096 positions would fit a very different yaw as well.
+    if (std::abs(yaw) > .07) scan.rings.sensor.slots = 4000;
+    const Calibration calibration = found({scan});
+    EXPECT_NEAR(norm(calibration.motions.at(0).turn - options.motion.turn), 0, 3e-5);
+    EXPECT_NEAR(norm(calibration.motions.at(0).move - options.motion.move), 0, 5e-4);
+    expect_beams(calibration.model, truth, 3e-4, 5e-5);
+    expect_placed(scan, calibration.model, firings_of_turn());
+  }
 }
 
 TEST(Calibrate, ScansOfABatchShareTheirBeams) {
@@ -144,6 +151,7 @@ TEST(Calibrate, ScansOfABatchShareTheirBeams) {
   EXPECT_NEAR(calibration.motions[2].move.x, 0, 5e-4);
   EXPECT_NEAR(calibration.motions[1].turn.z, .009, 3e-5);
   for (const LatticeScan& scan : scans) expect_placed(scan, calibration.model, firings_of_turn());
+  EXPECT_EQ(found(scans, 3).model, calibration.model);
 }
 
 TEST(Calibrate, FindsAFineEncoder) {
