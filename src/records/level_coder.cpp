@@ -20,8 +20,9 @@ std::uint32_t scatter(std::uint32_t x) {
 LevelCoder::LevelCoder(int bits, std::size_t records)
     : bits_(bits),
       table_bits_(std::clamp(static_cast<int>(std::bit_width(records)) - 1, kFewestTableBits,
-                             kMostTableBits)),
-      lines_(kContexts << table_bits_) {
+                             kMostTableBits)) {
+  if (bits == 0) return;
+  lines_.resize(kContexts << table_bits_);
   WeightSet<kInputs> start;
   for (std::size_t k = 0; k < kContexts + kShapes; ++k) start.set(k, kStartWeight);
   weights_.assign(kWeightSets[0] + kWeightSets[1] + kWeightSets[2], start);

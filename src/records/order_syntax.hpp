@@ -145,10 +145,10 @@ class OrderSyntax {
     }
     moves = code_bit(coder_, moves_, kLimit, moves);
     const bool behind = code_bit(coder_, behind_[moves], kLimit, 2 * ahead > left);
-    std::uint64_t distance = behind ? left - ahead : ahead;
-    distance = 1 + jump_[moves].code(coder_, distance - 1);
-    if (distance >= left) return false;
-    ahead = static_cast<std::size_t>(behind ? left - distance : distance);
+    const std::uint64_t between = jump_[moves].code(coder_, (behind ? left - ahead : ahead) - 1);
+    if (between >= left - 1) return false;
+    const auto distance = static_cast<std::size_t>(between) + 1;
+    ahead = behind ? left - distance : distance;
     const std::size_t place = places_.select((here + ahead) % left);
     if (moves) at_ = place + 1;
     return take(place, kJump, found);
