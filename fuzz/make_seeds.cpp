@@ -21,6 +21,7 @@
 #include "hostile/targets/residual.hpp"
 #include "hostile/targets/scan.hpp"
 #include "support/ray_tables.hpp"
+#include "support/record_chunks.hpp"
 
 namespace curlidar::fuzz {
 namespace {
@@ -237,7 +238,13 @@ void write_residuals(const Seeds& seeds, const std::string& scene, const compact
   }
 }
 
+void write_records_chunks(const Seeds& seeds) {
+  for (const auto& [name, bytes] : test::order_inputs()) seeds.write("order", name, bytes);
+  for (const auto& [name, bytes] : test::records_inputs()) seeds.write("records", name, bytes);
+}
+
 void write_all(const Seeds& seeds) {
+  write_records_chunks(seeds);
   write_files(seeds);
   for (const char* scene : {"street", "room"}) {
     const CompactImage scan = image_of(scene, 12, 64);

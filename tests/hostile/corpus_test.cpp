@@ -14,6 +14,7 @@
 #include "hostile/targets/field.hpp"
 #include "hostile/targets/mask.hpp"
 #include "hostile/targets/rays.hpp"
+#include "hostile/targets/records.hpp"
 #include "hostile/targets/residual.hpp"
 #include "hostile/targets/scan.hpp"
 
@@ -25,13 +26,12 @@ struct Target {
   std::string (*run)(ByteSpan);
 };
 
-constexpr Target kTargets[] = {{"container", test::container_target},
-                               {"mask", test::mask_target},
-                               {"field", test::field_target},
-                               {"residual", test::residual_target},
-                               {"scan", test::scan_target},
-                               {"decode", test::decode_target},
-                               {"rays", test::rays_target}};
+constexpr Target kTargets[] = {
+    {"container", test::container_target}, {"mask", test::mask_target},
+    {"field", test::field_target},         {"residual", test::residual_target},
+    {"scan", test::scan_target},           {"decode", test::decode_target},
+    {"rays", test::rays_target},           {"order", test::order_target},
+    {"records", test::records_target}};
 
 std::vector<std::byte> bytes_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);

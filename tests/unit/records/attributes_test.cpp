@@ -7,67 +7,16 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <random>
+
+#include "support/record_scenes.hpp"
 
 namespace curlidar {
 namespace {
 
 constexpr std::uint64_t kMuch = 1u << 28;
 
-/// A scan of which some cells are empty, its points ring by ring or firing by firing, some loose
-/// ones at the end, and slots without a point.
-struct Scene {
-  std::uint32_t rows = 16, columns = 200;
-  std::vector<std::uint8_t> occupied;
-  std::vector<std::int32_t> ranges, shift;
-  std::vector<std::uint32_t> cells;  ///< of the records in cells
-  CloudOrder order;
-  std::size_t loose;
-
-  explicit Scene(std::size_t loose_points, bool by_firing = false, std::size_t others = 0)
-      : loose(loose_points) {
-    std::mt19937 random(11);
-    for (std::uint32_t cell = 0; cell < rows * columns; ++cell) {
-      occupied.push_back(random() % 5 != 0 ? 1 : 0);
-      ranges.push_back(static_cast<std::int32_t>(65536 * (10 + cell % columns % 37)));
-      if (occupied.back() != 0) cells.push_back(cell);
-    }
-    for (std::uint32_t row = 0; row < rows; ++row) {
-      shift.push_back(static_cast<std::int32_t>(row * 7) - 50);
-    }
-    order.record.resize(cells.size() + loose);
-    std::iota(order.record.begin(), order.record.end(), 0u);
-    if (by_firing) {
-      std::stable_sort(
-          order.record.begin(), order.record.end() - static_cast<std::ptrdiff_t>(loose),
-          [&](std::uint32_t a, std::uint32_t b) { return firing(cells[a]) < firing(cells[b]); });
-    }
-    order.kind.assign(order.record.size(), SlotKind::point);
-    order.kind.insert(order.kind.begin() + 100, others, SlotKind::nan);
-    order.width = order.slots();
-  }
-
-  std::uint32_t firing(std::uint32_t cell) const {
-    const auto ahead = static_cast<std::int64_t>(cell % columns) - shift[cell / columns];
-    return static_cast<std::uint32_t>((ahead + columns) % columns);
-  }
-  RecordGeometry geometry() const { return {{rows, columns, occupied, loose}, ranges, shift}; }
-
-  /// Values by cell; 3 for slots of no cell.
-  template <class Value, class Function>
-  Attribute attribute(const char* name, const Function& value) const {
-    std::vector<Value> values;
-    std::size_t point = 0;
-    for (const SlotKind kind : order.kind) {
-      const std::size_t record =
-          kind == SlotKind::point ? order.record[point++] : order.record.size();
-      values.push_back(record < cells.size() ? static_cast<Value>(value(cells[record]))
-                                             : static_cast<Value>(3));
-    }
-    return {name, 1, std::move(values)};
-  }
-};
+using Scene = test::RecordScene;
 
 /// Values compared bit for bit.
 template <class Value>
@@ -103,13 +52,8 @@ double check(const Scene& scene, const std::vector<Attribute>& attributes) {
 }
 
 TEST(Records, NoAttributesOrNoSlots) {
-  EXPECT_LT(check(Scene(0), {}), .01);
-  Scene scene(0);
-  scene.occupied.clear();
-  scene.ranges.clear();
-  scene.shift.clear();
-  scene.rows = scene.columns = 0;
-  scene.order = {};
+  EXPECT_LT(check(Scene(), {}), .01);
+  const Scene scene({.rows = 0, .columns = 0});
   const Attribute none{"intensity", 1, std::vector<float>{}};
   const auto bytes = write_records({none}, scene.order, scene.geometry());
   ASSERT_TRUE(bytes);
@@ -122,7 +66,7 @@ TEST(Records, NoAttributesOrNoSlots) {
 TEST(Records, AllTypesAndAnyBits) {
   std::mt19937_64 random(5);
   for (const std::size_t others : {0u, 60u}) {
-    const Scene scene(25, true, others);
+    const Scene scene({.loose = 25, .others = others, .by_firing = true});
     std::vector<Attribute> attributes;
     for (int type = 0; type < 10; ++type) {
       for (const std::uint32_t components : {1u, 3u, 17u}) {
@@ -145,11 +89,11 @@ TEST(Records, AllTypesAndAnyBits) {
 
 TEST(Records, FunctionsOfRowAndFiringCostNextToNothing) {
   for (const bool by_firing : {false, true}) {
-    const Scene scene(0, by_firing);
-    const auto row = [&](std::uint32_t cell) { return (cell / scene.columns * 5 + 3) % 16; };
+    const Scene scene({.by_firing = by_firing});
+    const auto row = [&](std::uint32_t cell) { return (scene.row(cell) * 5 + 3) % 16; };
     EXPECT_LT(check(scene, {scene.attribute<std::uint16_t>("ring", row)}), .25);
     const auto time = [&](std::uint32_t cell) {
-      return 1000 * (scene.firing(cell) * scene.firing(cell) / 3) + cell / scene.columns * 11;
+      return 1000 * (scene.firing(cell) * scene.firing(cell) / 3) + scene.row(cell) * 11;
     };
     EXPECT_LT(check(scene, {scene.attribute<std::uint32_t>("t", time)}), 2.2);
     const auto seconds = [&](std::uint32_t cell) { return 1e-6 * scene.firing(cell) * 55; };
@@ -158,11 +102,11 @@ TEST(Records, FunctionsOfRowAndFiringCostNextToNothing) {
 }
 
 TEST(Records, SmoothLevelsCostLittle) {
-  const Scene scene(10, false, 30);
+  const Scene scene({.loose = 10, .others = 30});
   std::mt19937 generator(2);
   const auto random = [&] { return static_cast<double>(generator() % 3); };
   const auto level = [&](std::uint32_t cell) {
-    return 30 + 20 * std::sin(cell % scene.columns * .05) + random();
+    return 30 + 20 * std::sin(scene.column(cell) * .05) + random();
   };
   const Attribute integers = scene.attribute<std::uint8_t>("intensity", level);
   const auto hundredths = [&](std::uint32_t cell) {
@@ -174,11 +118,11 @@ TEST(Records, SmoothLevelsCostLittle) {
 }
 
 TEST(Records, WideLevelsAndPalettes) {
-  const Scene scene(10);
+  const Scene scene({.loose = 10});
   std::mt19937 generator(2);
   const auto random = [&] { return static_cast<double>(generator() % 50); };
   const auto wide = [&](std::uint32_t cell) {
-    return std::exp(5 + 3 * std::sin(cell % scene.columns * .05)) + random();
+    return std::exp(5 + 3 * std::sin(scene.column(cell) * .05)) + random();
   };
   const auto some = [&](std::uint32_t cell) { return 1e9 * (cell % 7) * (cell % 7) + .123; };
   EXPECT_LT(check(scene, {scene.attribute<std::uint16_t>("signal", wide)}), 10.);
@@ -190,7 +134,7 @@ TEST(Records, WideLevelsAndPalettes) {
 }
 
 TEST(Records, RefusesWhatDoesNotFit) {
-  const Scene scene(0);
+  const Scene scene;
   const Attribute shorter{"a", 1, std::vector<float>(3)};
   EXPECT_FALSE(write_records({shorter}, scene.order, scene.geometry()));
   const Attribute plain = scene.attribute<float>("a", [](auto cell) { return cell; });
@@ -203,11 +147,11 @@ TEST(Records, RefusesWhatDoesNotFit) {
 }
 
 TEST(Records, DamageIsRefusedOrHarmless) {
-  const Scene scene(9, true, 20);
+  const Scene scene({.loose = 9, .others = 20, .by_firing = true});
   std::mt19937 random(5);
   const std::vector<Attribute> attributes = {
       scene.attribute<std::uint8_t>("i", [&](auto cell) { return cell % 100 + random() % 9; }),
-      scene.attribute<std::uint16_t>("ring", [&](auto cell) { return cell / scene.columns; }),
+      scene.attribute<std::uint16_t>("ring", [&](auto cell) { return scene.row(cell); }),
       scene.attribute<double>("class",
                               [&](auto) { return 1e9 * static_cast<double>(random() % 9) + .1; })};
   const auto bytes = write_records(attributes, scene.order, scene.geometry());
