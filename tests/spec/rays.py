@@ -23,7 +23,7 @@ def _rounded(a, bits):
 
 @lru_cache(maxsize=None)
 def beam_tables():
-    """number -> (slots, range unit, rows of (elevation, azimuth offset, height, lateral, phase))."""
+    """number -> (slots, range unit, rows of elevation, azimuth offset, height, lateral, phase)."""
     tables = {}
     for path in BEAMS.glob("*.txt"):
         lines = [line for line in path.read_text("ascii").splitlines() if not line.startswith("#")]

@@ -40,7 +40,7 @@ class Window:
 
 
 class RayWindow(Window):
-    """The same for a segment on the sensor's own rays, which begins at (row, column) of the image."""
+    """The same on the sensor's own rays: the segment begins at (row, column) of the image."""
 
     def __init__(self, rays, row, column, rows, columns, step):
         super().__init__(rays.elevation[row:row + rows], len(rays.firings), column, columns, step)
