@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 from container import Corrupt, Unsupported, chunk_bytes, crc32c, file_of, read_chunks
-from scan import FIELD, INDEX, MASK, PARAMETERS, RESIDUAL, SENSOR, Scan
+from scan import FIELD, INDEX, MASK, PARAMETERS, RAYS, RESIDUAL, SENSOR, Scan
 
 FOLDER = Path(__file__).resolve().parents[1] / "golden" / "compact"
 COMMAND = os.environ.get("CURLIDAR")
@@ -78,7 +78,7 @@ class DamageTest(unittest.TestCase):
         self.refused(data[:-6] + bytes(unknown) + data[-6:])
 
     def test_unknown_chunks(self):
-        for kind in (0x16, 0x21, 0x71):
+        for kind in (0x17, 0x30, 0x71):
             self.refused(file_of([*self.fine, (kind, b"abc")]))
         for kind in (0x91, 0xf1):
             self.same(file_of([*self.fine, (kind, b"abc")]), self.fine)
@@ -118,6 +118,28 @@ class DamageTest(unittest.TestCase):
         self.refused(self.changed(self.fine, SENSOR, lambda p: bytes([p[0] | 4]) + p[1:]))
         self.refused(self.changed(self.fine, SENSOR, lambda p: p + b"abcde"))
         self.same(self.changed(self.segments, INDEX, lambda p: b"\1" + p[1:]), self.segments)
+
+    def test_rays(self):
+        named, own = load("rays-named"), load("rays-own")
+        rays = dict(named)[RAYS]
+        for chunks in (named, own):
+            self.refused(file_of([chunk for chunk in chunks if chunk[0] != RAYS]))
+            self.refused(self.changed(chunks, SENSOR, lambda p: bytes([p[0] & ~4]) + p[1:]))
+            self.refused(self.changed(chunks, SENSOR, lambda p: bytes([p[0] | 1]) + p[1:]))
+            self.refused(self.changed(chunks, RAYS, lambda p: bytes([p[0] | 16]) + p[1:]))
+            self.refused(self.changed(chunks, RAYS, lambda p: p[:len(p) // 2]))
+            self.refused(self.changed(chunks, RAYS, lambda p: p + bytes(9)))
+            self.refused(self.changed(chunks, RAYS, lambda p: b""))
+        self.refused(file_of([*self.fine, (RAYS, rays)]))
+        for number in (0, 1, 99):  # no such tables, and one of other rows
+            self.refused(self.changed(named, RAYS, lambda p: bytes([p[0], number]) + p[2:]))
+        self.refused(self.changed(named, RAYS, lambda p: bytes([p[0] | 4]) + p[1:]))
+        self.refused(self.changed(named, PARAMETERS, lambda p: p[:2] + bytes([p[2] - 1]) + p[3:]))
+        # A file cut behind its rays has a table and no returns.
+        data = file_of(named)
+        behind = data.index(rays) + len(rays) + 4
+        self.assertEqual(self.accepted(data[:behind], cut=True), 0)
+        self.refused(data[:behind - 5], cut=True)
 
     def test_streams(self):
         for kind in (MASK, FIELD, RESIDUAL):
