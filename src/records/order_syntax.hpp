@@ -73,6 +73,12 @@ class OrderSyntax {
     std::size_t place_then = 0;  ///< of the point after it; encoder only
   };
 
+  /// What is known of a row, each of its last two times.
+  struct Row {
+    std::uint8_t emitted = 0;  ///< whether its empty cells had slots
+    std::uint8_t missed = 0;   ///< whether what was expected after its points did not come
+  };
+
   Slot next_slot(const CloudOrder& order, std::uint64_t slot) {
     Slot wanted{order.kind[slot]};
     if (wanted.kind != SlotKind::point) return wanted;
@@ -88,7 +94,7 @@ class OrderSyntax {
     if (places_.left() == 0) return code_kind(wanted, found);
     const std::size_t expected = places_.open_from(at_);
     const bool hit = point && wanted.place == expected;
-    if (code_bit(coder_, hit_[history_ * 3 + above_], kLimit, hit)) {
+    if (code_bit(coder_, hit_[(history_ * 3 + above_) * 4 + habit()], kLimit, hit)) {
       at_ = expected + 1;
       return take(expected, kHit, found);
     }
@@ -111,12 +117,12 @@ class OrderSyntax {
       if (walk_.holds[place] != 0) return false;
       places_.close(place);
       at_ = place + 1;
-      std::uint8_t& row = rows_[walk_.cell[place] / columns_];
+      std::uint8_t& row = rows_[walk_.cell[place] / columns_].emitted;
       const std::size_t context = (std::size_t{row} * 4 + emitted_) * 3 + above_;
       const bool emitted =
           code_bit(coder_, emits_[context], kLimit, wanted.kind != SlotKind::point);
-      row = static_cast<std::uint8_t>((row << 1 | (emitted ? 1 : 0)) & 3);
-      emitted_ = (emitted_ << 1 | (emitted ? 1 : 0)) & 3;
+      row = pushed(row, emitted);
+      emitted_ = pushed(emitted_, emitted);
       if (emitted) return code_kind(wanted, found);
     }
     return false;
@@ -167,9 +173,22 @@ class OrderSyntax {
     found.kind = SlotKind::point;
     found.place = place;
     note(event);
+    if (place < walk_.cell.size()) last_row_ = &rows_[walk_.cell[place] / columns_];
     return true;
   }
-  void note(Event event) { history_ = (history_ << 2 | event) & 63; }
+
+  /// What came the last two times after a point of the row that the slot before has.
+  std::size_t habit() const { return last_row_ != nullptr ? last_row_->missed : 0; }
+
+  void note(Event event) {
+    history_ = (history_ << 2 | event) & 63;
+    if (last_row_ != nullptr) last_row_->missed = pushed(last_row_->missed, event != kHit);
+    last_row_ = nullptr;
+  }
+
+  static std::uint8_t pushed(std::uint8_t bits, bool bit) {
+    return static_cast<std::uint8_t>((bits << 1 | (bit ? 1 : 0)) & 3);
+  }
 
   Coder& coder_;
   const WalkRecords& walk_;
@@ -180,13 +199,15 @@ class OrderSyntax {
 
   std::size_t at_ = 0;  ///< where the walk goes on
   std::uint64_t period_ = 0;
-  std::size_t history_ = 0;         ///< the last three events
-  std::size_t above_ = 0;           ///< the slot above in an organised cloud: unknown, point, other
-  std::size_t emitted_ = 0;         ///< whether the last two empty cells had slots
-  std::vector<std::uint8_t> rows_;  ///< the same of each row
+  std::size_t history_ = 0;   ///< the last three events
+  std::size_t above_ = 0;     ///< the slot above in an organised cloud: unknown, point, other
+  std::uint8_t emitted_ = 0;  ///< whether the last two empty cells had slots
+  std::vector<Row> rows_;
+  Row* last_row_ = nullptr;  ///< of the slot before, if it is a point of a cell
   std::size_t last_kind_ = 0;
 
-  std::array<BitModel, 64 * 3> hit_, inserted_;
+  std::array<BitModel, 64 * 3 * 4> hit_;
+  std::array<BitModel, 64 * 3> inserted_;
   std::array<BitModel, 64> loose_;
   std::array<BitModel, 4 * 4 * 3> emits_;
   std::array<BitModel, 2 * 4> kind_;

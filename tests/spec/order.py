@@ -98,7 +98,8 @@ class Order:
         self.at, self.history, self.last_kind = 0, (0, 0, 0), 0
         self.emitted = (0, 0)
         self.row_emitted = [(0, 0)] * self.grid.rows
-        self.hit = [[model() for _ in range(3)] for _ in range(64)]
+        self.flags, self.last_row = [(0, 0)] * self.grid.rows, None
+        self.hit = {}
         self.inserted = [[model() for _ in range(3)] for _ in range(64)]
         self.loose = [model() for _ in range(64)]
         self.emits, self.kind = {}, [[model(), model()] for _ in range(4)]
@@ -131,7 +132,9 @@ class Order:
             return None
         here = self._open_from(self.at)
         h = 16 * self.history[0] + 4 * self.history[1] + self.history[2]
-        if decide(self.decoder, self.hit[h][self.above], LIMIT):
+        flags = (0, 0) if self.last_row is None else self.flags[self.last_row]
+        hit = self.hit.setdefault((h, self.above, flags), model())
+        if decide(self.decoder, hit, LIMIT):
             self.at = here + 1
             return self._event(HIT, here)
         if decide(self.decoder, self.inserted[h][self.above], LIMIT):
@@ -169,6 +172,10 @@ class Order:
 
     def _event(self, event, place):
         self.history = *self.history[1:], event
+        if self.last_row is not None:
+            self.flags[self.last_row] = self.flags[self.last_row][1], int(event != HIT)
+        in_cell = place is not None and place < len(self.rows_of_places)
+        self.last_row = self.rows_of_places[place] if in_cell else None
         return place
 
     def _kind(self):
