@@ -18,6 +18,7 @@
 #include "hostile/targets/decode.hpp"
 #include "hostile/targets/field.hpp"
 #include "hostile/targets/mask.hpp"
+#include "hostile/targets/points.hpp"
 #include "hostile/targets/residual.hpp"
 #include "hostile/targets/scan.hpp"
 #include "support/ray_tables.hpp"
@@ -243,9 +244,38 @@ void write_records_chunks(const Seeds& seeds) {
   for (const auto& [name, bytes] : test::records_inputs()) seeds.write("records", name, bytes);
 }
 
+/// Loose points and corrections of a simulated scan, each exact, within a bound, and of doubles.
+void write_points(const Seeds& seeds) {
+  std::vector<Vec3> points;
+  for (const Vec3& p : scan_of("room", 12, 64).positions) {
+    if (is_return(p) && points.size() < 120) {
+      points.push_back({round_to_float32(p.x), round_to_float32(p.y), round_to_float32(p.z)});
+    }
+  }
+  points[7] = {0x1p100, 0, 0};
+  const std::vector<Vec3> predicted = test::made_up_points(points.size());
+  for (const ScalarType type : {ScalarType::float32, ScalarType::float64}) {
+    for (const double bound : {0.0, 0.01}) {
+      const std::string name = std::string(to_string(type)) + (bound > 0 ? "-bound" : "");
+      seeds.write("loose", name, encode_loose(points, type, {bound, 0})->bytes);
+      Bytes out;
+      append(out, {points.size(), static_cast<std::size_t>(type)});
+      append(out, encode_corrections(predicted, points, type, {bound})->bytes);
+      seeds.write("corrections", name, out);
+    }
+  }
+  for (const std::size_t options : {0u, 2u, 0x17u}) {
+    Bytes out;
+    append(out, {12, 24, options, 200, 1});
+    for (std::size_t i = 0; i < 300; ++i) append(out, {test::mixed(i) >> 24});
+    seeds.write("directions", std::to_string(options), out);
+  }
+}
+
 void write_all(const Seeds& seeds) {
   write_records_chunks(seeds);
   write_files(seeds);
+  write_points(seeds);
   for (const char* scene : {"street", "room"}) {
     const CompactImage scan = image_of(scene, 12, 64);
     write_scans(seeds, scene, scan);

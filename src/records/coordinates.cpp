@@ -86,7 +86,9 @@ bool Numbers::value(std::int64_t number, double& value) const {
 }
 
 std::int64_t Numbers::number(double value) const {
-  return is_grid() ? nearest(position_of_value(value)) : rank_of(value, bits());
+  if (is_grid()) return nearest(position_of_value(value));
+  const double most = largest(bits());
+  return rank_of(std::clamp(value, -most, most), bits());
 }
 
 double Numbers::position_of_value(double value) const {

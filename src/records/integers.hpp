@@ -43,13 +43,15 @@ class IntegerCoder {
   using Contexts = std::array<std::uint32_t, Inputs>;
 
   /// `contexts`: how many there are for each input. `signs`: how many contexts of the sign.
-  IntegerCoder(const Contexts& contexts, std::uint32_t signs) : signs_(signs), weights_(kNodes) {
-    for (std::size_t i = 0; i < Inputs; ++i) models_[i].resize(std::size_t{contexts[i]} * kNodes);
+  IntegerCoder(const Contexts& contexts, std::uint32_t signs)
+      : blocks_(1), signs_(signs), weights_(kNodes) {
+    for (std::size_t i = 0; i < Inputs; ++i) block_of_[i].resize(contexts[i], kUnseen);
   }
 
   template <class Coder>
   std::int64_t code(Coder& coder, const Contexts& contexts, std::uint32_t sign,
                     std::int64_t value) {
+    see(contexts);
     if (code_node(coder, contexts, 0, value == 0)) return 0;
     const bool negative = code_bit(coder, signs_[sign], kLimit, value < 0);
     const std::uint64_t rest = rest_of(value);
@@ -85,11 +87,21 @@ class IntegerCoder {
     return value < 0 ? ~bits : bits - (value != 0);
   }
 
+  /// Gives the contexts that come for the first time models of their own: most never come.
+  void see(const Contexts& contexts) {
+    for (std::size_t i = 0; i < Inputs; ++i) {
+      std::uint32_t& block = block_of_[i][contexts[i]];
+      if (block != kUnseen) continue;
+      block = static_cast<std::uint32_t>(blocks_.size());
+      blocks_.emplace_back();
+    }
+  }
+
   template <class Coder>
   bool code_node(Coder& coder, const Contexts& contexts, std::uint32_t node, bool bit) {
     std::array<BitModel*, Inputs> models;
     for (std::size_t i = 0; i < Inputs; ++i) {
-      models[i] = &models_[i][std::size_t{contexts[i]} * kNodes + node];
+      models[i] = &blocks_[block_of_[i][contexts[i]]][node];
     }
     return code_bit(coder, models, weights_[node], kRate, kLimit, bit);
   }
@@ -97,7 +109,7 @@ class IntegerCoder {
   std::uint32_t node_cost(const Contexts& contexts, std::uint32_t node, bool bit) const {
     std::int64_t sum = 0;
     for (std::size_t i = 0; i < Inputs; ++i) {
-      const BitModel& model = models_[i][std::size_t{contexts[i]} * kNodes + node];
+      const BitModel& model = blocks_[block_of_[i][contexts[i]]][node];
       sum += std::int64_t{weights_[node].weight[i]} * stretch(model.probability);
     }
     constexpr std::int64_t most = kStretchLimit;
@@ -119,7 +131,10 @@ class IntegerCoder {
     return found << place | code_plain(coder, rest, place);
   }
 
-  std::array<std::vector<BitModel>, Inputs> models_;
+  static constexpr std::uint32_t kUnseen = 0;
+
+  std::array<std::vector<std::uint32_t>, Inputs> block_of_;  ///< of each context
+  std::vector<std::array<BitModel, kNodes>> blocks_;         ///< the first one never learns
   std::vector<BitModel> signs_;
   std::vector<MixWeights<Inputs>> weights_;
   std::array<BitModel, (kMostBits + 1) * kPrefixes> bits_;

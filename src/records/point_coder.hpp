@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "records/integers.hpp"
 #include "records/coordinates.hpp"
+#include "records/integers.hpp"
 #include "records/point_predictor.hpp"
 #include "records/points.hpp"
 

@@ -31,17 +31,17 @@ Position turn(const Position& from, const Position& to, const Position& of) {
   return turned;
 }
 
+/// The value unless it is far beyond any position, or not a number.
+double bounded(double value, double otherwise) {
+  return std::abs(value) < 0x1p60 ? value : otherwise;
+}
+
 /// Moves the point along its ray so that it agrees with the coordinate that tells its range best.
 double on_ray(const Position& point, std::size_t axis, const Position& known) {
   if (axis == 0) return point[0];
   const std::size_t by = axis == 2 && std::abs(point[1]) > std::abs(point[0]) ? 1 : 0;
   if (point[by] == 0 || std::abs(point[by]) * 4 < std::abs(point[axis])) return point[axis];
-  return point[axis] * (known[by] / point[by]);
-}
-
-/// The value unless it is far beyond any position, or not a number.
-double bounded(double value, double otherwise) {
-  return std::abs(value) < 0x1p60 ? value : otherwise;
+  return bounded(point[axis] * (known[by] / point[by]), point[axis]);
 }
 
 double blend(const std::array<double, 3>& guesses, const std::array<double, 3>& misses) {

@@ -14,8 +14,8 @@
 #include "curlidar/cloud.hpp"
 #include "curlidar/result.hpp"
 #include "format/payload.hpp"
-#include "records/integers.hpp"
 #include "records/coordinates.hpp"
+#include "records/integers.hpp"
 #include "records/point_predictor.hpp"
 
 namespace curlidar::records {

@@ -13,6 +13,7 @@
 #include "hostile/targets/decode.hpp"
 #include "hostile/targets/field.hpp"
 #include "hostile/targets/mask.hpp"
+#include "hostile/targets/points.hpp"
 #include "hostile/targets/rays.hpp"
 #include "hostile/targets/records.hpp"
 #include "hostile/targets/residual.hpp"
@@ -26,12 +27,18 @@ struct Target {
   std::string (*run)(ByteSpan);
 };
 
-constexpr Target kTargets[] = {
-    {"container", test::container_target}, {"mask", test::mask_target},
-    {"field", test::field_target},         {"residual", test::residual_target},
-    {"scan", test::scan_target},           {"decode", test::decode_target},
-    {"rays", test::rays_target},           {"order", test::order_target},
-    {"records", test::records_target}};
+constexpr Target kTargets[] = {{"container", test::container_target},
+                               {"mask", test::mask_target},
+                               {"field", test::field_target},
+                               {"residual", test::residual_target},
+                               {"scan", test::scan_target},
+                               {"decode", test::decode_target},
+                               {"rays", test::rays_target},
+                               {"order", test::order_target},
+                               {"records", test::records_target},
+                               {"loose", test::loose_target},
+                               {"corrections", test::corrections_target},
+                               {"directions", test::directions_target}};
 
 std::vector<std::byte> bytes_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);

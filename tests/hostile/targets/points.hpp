@@ -41,16 +41,22 @@ inline std::string loose_target(ByteSpan bytes) {
   return again && *again == *points ? "" : "coded again, the points differ";
 }
 
-/// Input: number of points, type (odd: float64), payload. The predictions are made up.
+/// Float32 coordinates within 128 of the origin.
+inline std::vector<Vec3> made_up_points(std::size_t count) {
+  std::size_t number = 0;
+  const auto any = [&] {
+    return round_to_float32(static_cast<std::int32_t>(mixed(number++)) * 0x1p-24);
+  };
+  std::vector<Vec3> points(count);
+  for (Vec3& p : points) p = {any(), any(), any()};
+  return points;
+}
+
+/// Input: number of points, type (odd: float64), payload. made_up_points are predicted.
 inline std::string corrections_target(ByteSpan bytes) {
   FuzzInput input(bytes);
-  std::vector<Vec3> predicted(input.byte());
+  const std::vector<Vec3> predicted = made_up_points(input.byte());
   const ScalarType type = (input.byte() & 1) != 0 ? ScalarType::float64 : ScalarType::float32;
-  std::size_t number = 0;
-  const auto any = [&] { return static_cast<std::int32_t>(mixed(number++)) * 0x1p-24; };
-  for (Vec3& p : predicted) {
-    p = {round_to_float32(any()), round_to_float32(any()), round_to_float32(any())};
-  }
   std::vector<Vec3> points = predicted;
   const Status applied = apply_corrections({ChunkType::corrections, input.rest(), 2}, type, points);
   if (!applied) return applied.error().message.empty() ? "an error without a message" : "";
