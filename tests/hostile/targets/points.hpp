@@ -28,12 +28,12 @@ inline bool all_of_type(ScalarType type, const std::vector<Vec3>& points) {
   return true;
 }
 
-/// Input: payload. It takes no more than 4096 points.
+/// Input: payload. It takes no more than 512 points.
 inline std::string loose_target(ByteSpan bytes) {
-  const auto points = decode_loose({ChunkType::loose, bytes, 0}, 4096);
+  const auto points = decode_loose({ChunkType::loose, bytes, 0}, 512);
   if (!points) return points.error().message.empty() ? "an error without a message" : "";
   const auto type = static_cast<ScalarType>(bytes[1]);
-  if (points->size() > 4096) return "more points than allowed";
+  if (points->size() > 512) return "more points than allowed";
   if (!all_of_type(type, *points)) return "a point that is not finite or not of its type";
   const auto coded = encode_loose(*points, type, {});
   if (!coded) return "cannot be coded again: " + coded.error().message;
