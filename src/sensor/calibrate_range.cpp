@@ -56,6 +56,26 @@ double score(const std::vector<std::vector<double>>& ranges, double unit) {
   return all.empty() ? 0 : median(all);
 }
 
+/// The phase that the ranges share: that of their resultant, then the mean of those around it,
+/// which returns of another beam do not reach.
+double phase_of(const std::vector<double>& ranges, double unit) {
+  double phase = std::arg(resultant_of(ranges, unit)) / kTurn * unit;
+  for (int pass = 0; pass < 3; ++pass) {
+    std::vector<double> off, size;
+    for (const double range : ranges) off.push_back(std::remainder(range - phase, unit));
+    for (const double o : off) size.push_back(std::abs(o));
+    const double near = 3 * median(size);
+    double sum = 0, count = 0;
+    for (const double o : off) {
+      if (std::abs(o) > near) continue;
+      sum += o;
+      count += 1;
+    }
+    if (count > 0) phase += sum / count;
+  }
+  return std::remainder(phase, unit);
+}
+
 }  // namespace
 
 double find_range_unit(std::span<const ScanSample> samples, BeamModel& model) {
@@ -71,8 +91,7 @@ double find_range_unit(std::span<const ScanSample> samples, BeamModel& model) {
   const double unit = kUnits[static_cast<std::size_t>(chosen - scores.begin())];
   model.range_unit_m = unit;
   for (std::size_t ring = 0; ring < ranges.size(); ++ring) {
-    if (ranges[ring].empty()) continue;
-    model.beams[ring].range_phase_m = std::arg(resultant_of(ranges[ring], unit)) / kTurn * unit;
+    if (!ranges[ring].empty()) model.beams[ring].range_phase_m = phase_of(ranges[ring], unit);
   }
   return *chosen;
 }

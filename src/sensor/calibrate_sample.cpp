@@ -32,6 +32,7 @@ ScanSample all_returns(const RingedScan& scan) {
     const std::uint16_t ring = scan.rings->ring_of_point[i];
     const Vec3& p = cloud.positions[i];
     if (ring == kNoRing || std::hypot(p.x, p.y) < kNearestDistance_m) continue;
+    if (!(norm(p) < kFarthest_m)) continue;
     out.moved.push_back(p);
     out.ring.push_back(ring);
     const std::size_t column = transposed ? i / cloud.width : i % cloud.width;

@@ -23,8 +23,8 @@ struct ScanSample {
   std::size_t size() const { return moved.size(); }
 };
 
-/// Returns nearer to the spin axis than this tell nothing.
-inline constexpr double kNearestDistance_m = 0.3;
+/// Returns nearer to the spin axis than this tell nothing, those farther off are none of a sensor.
+inline constexpr double kNearestDistance_m = 0.3, kFarthest_m = 1e4;
 
 /// Every return with a ring.
 ScanSample all_returns(const RingedScan& scan);

@@ -2,6 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "base/try.hpp"
@@ -28,6 +32,48 @@ Error no_lattice(const char* why) {
       fmt::format("no lattice of a sensor's own rays found: {}. encode uses uniform columns for "
                   "such scans and needs no calibration",
                   why)};
+}
+
+bool descends(const BeamModel& model) {
+  for (std::size_t i = 1; i < model.beams.size(); ++i) {
+    if (!(model.beams[i].elevation < model.beams[i - 1].elevation)) return false;
+  }
+  return true;
+}
+
+/// Where each ring belongs: from top to bottom by the elevations of the beams, and rings that are
+/// parts of one together (a turn that was cut where it does not end).
+std::vector<std::uint16_t> places_of(const BeamModel& model) {
+  constexpr double kSame = 3e-5, kSame_m = 5e-4;
+  std::vector<std::uint16_t> order(model.beams.size()), places(model.beams.size());
+  std::iota(order.begin(), order.end(), std::uint16_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::uint16_t a, std::uint16_t b) {
+    return model.beams[a].elevation > model.beams[b].elevation;
+  });
+  std::uint16_t place = 0;
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    const Beam &above = model.beams[order[i - 1]], &beam = model.beams[order[i]];
+    const bool same = above.elevation - beam.elevation < kSame &&
+                      std::abs(above.height_m - beam.height_m) < kSame_m;
+    places[order[i]] = same ? place : ++place;
+  }
+  return places;
+}
+
+/// The same rings at other places.
+void relabel(Detection& found, const std::vector<std::uint16_t>& places) {
+  const auto last = *std::max_element(places.begin(), places.end());
+  std::vector<Ring> rings(last + std::size_t{1});
+  std::vector<double> elevations(rings.size());
+  for (std::size_t i = places.size(); i-- > 0;) {
+    rings[places[i]] = found.sensor.rings[i];
+    elevations[places[i]] = found.ring_elevations[i];
+  }
+  found.sensor.rings = std::move(rings);
+  found.ring_elevations = std::move(elevations);
+  for (std::uint16_t& ring : found.ring_of_point) {
+    if (ring != kNoRing) ring = places[ring];
+  }
 }
 
 ScanOnLattice describe(const LatticeFit& fit) {
@@ -70,6 +116,12 @@ Result<SensorCalibration> calibrate_sensor(std::span<const Cloud> clouds,
   inner.threads = settings.threads;
   inner.progress = [&](std::string_view stage, double fraction) { report(stage, 0.7 * fraction); };
   CURLIDAR_TRY_ASSIGN(calibration, calibrate(scans, inner));
+  if (calibration && !descends(calibration->model)) {
+    const std::vector<std::uint16_t> places = places_of(calibration->model);
+    for (Detection& found : rings) relabel(found, places);
+    CURLIDAR_TRY_ASSIGN(again, calibrate(scans, inner));
+    calibration = std::move(again);
+  }
   if (!calibration) {
     return no_lattice(rings.front().source == RingSource::uniform
                           ? "the scan has no rings"

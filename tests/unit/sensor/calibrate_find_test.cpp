@@ -226,6 +226,31 @@ TEST(Calibrate, TakesAnOddNumberOfPositionsFromTheProfile) {
   expect_placed(scan, calibration.model, 2083);
 }
 
+TEST(Calibrate, OutliersChangeNothing) {
+  const BeamModel truth = two_blocks();
+  LatticeScanOptions options;
+  options.step = 1;
+  LatticeScan scan = unknown(truth, options);
+  const BeamModel clean = found({scan}).model;
+  for (const double far : {1e5, 1e30, 1e300}) {
+    scan.cloud.positions.push_back({far, -far, far / 3});
+    scan.rings.ring_of_point.push_back(4);
+  }
+  EXPECT_EQ(found({scan}).model, clean);
+  // A tenth of the returns from anywhere else.
+  test::Random random(2);
+  for (std::size_t i = 0; i < scan.cloud.size(); i += 10) {
+    scan.cloud.positions[i] = {random.normal() * 9, random.normal() * 9, random.normal()};
+  }
+  const BeamModel noisy = found({scan}).model;
+  EXPECT_EQ(noisy.slots, truth.slots);
+  EXPECT_EQ(noisy.range_unit_m, truth.range_unit_m);
+  for (std::size_t k = 0; k < truth.beams.size(); ++k) {
+    EXPECT_NEAR(noisy.beams[k].elevation, truth.beams[k].elevation, 5e-5) << k;
+    EXPECT_NEAR(noisy.beams[k].lateral_m, truth.beams[k].lateral_m, 5e-4) << k;
+  }
+}
+
 TEST(Calibrate, KeepsBeamsWithoutReturns) {
   const BeamModel truth = two_blocks();
   LatticeScan scan = unknown(truth, {});
