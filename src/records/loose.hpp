@@ -37,7 +37,8 @@ Result<CodedPoints> encode_loose(std::span<const Vec3> points, ScalarType type,
 Result<std::vector<Vec3>> decode_loose(const Chunk& chunk, std::size_t max_points);
 
 /// An order in which points that follow each other lie close together: along the Morton curve of
-/// the bounding box, 2^21 cells a side. For clouds that have no order worth keeping. O(n log n).
+/// the bounding box, 2^21 cells a side. For clouds in no order at all: the order in which a sensor
+/// saw its points codes in far fewer bits. O(n log n).
 std::vector<std::uint32_t> morton_order(std::span<const Vec3> points);
 
 }  // namespace curlidar
