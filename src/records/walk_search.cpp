@@ -62,7 +62,7 @@ class WalkSearch {
     add(ring_by_ring());
     add(firing_by_firing(false));
     add(firing_by_firing(true));
-    if (order_.height > 1) {
+    if (order_.height > 1 && order_.width > 0) {
       add(organised(order_.width, false));
       add(organised(order_.width, true));
     } else if (order_.slots() % grid_.rows == 0) {
