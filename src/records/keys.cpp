@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "records/keys.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <optional>
 #include <type_traits>
 
@@ -12,22 +14,42 @@
 namespace curlidar {
 namespace {
 
-constexpr std::array<double, kKeyScales - 1> kDivisors = {1,   10,  100,  1e3,   1e4,
-                                                          1e5, 1e6, 255., 65535.};
+constexpr std::array<std::uint32_t, kKeyScales - 1> kDivisors = {1,      10,      100, 1000, 10000,
+                                                                 100000, 1000000, 255, 65535};
 /// Whole numbers that a double holds with all below them.
-constexpr double kMostExact = 9007199254740992.;
+constexpr std::int64_t kMostExact = std::int64_t{1} << 53;
+
+/// The double next to key / divisor, of two the even one. In integers, as not every processor
+/// divides doubles to that precision.
+double quotient(std::int64_t key, std::uint32_t divisor) {
+  key = std::clamp(key, -kMostExact, kMostExact);
+  if (key == 0) return 0;
+  const auto magnitude = static_cast<std::uint64_t>(std::abs(key));
+  std::uint64_t whole = magnitude / divisor, rest = magnitude % divisor;
+  int exponent = 0;
+  while (whole < std::uint64_t{1} << 54) {
+    whole = whole << 8 | (rest << 8) / divisor;
+    rest = (rest << 8) % divisor;
+    exponent -= 8;
+  }
+  const int extra = static_cast<int>(std::bit_width(whole)) - 53;
+  const std::uint64_t half = std::uint64_t{1} << (extra - 1), low = whole & (2 * half - 1);
+  whole >>= extra;
+  if (low > half || (low == half && (rest != 0 || (whole & 1) != 0))) ++whole;
+  const double value = std::ldexp(static_cast<double>(whole), exponent + extra);
+  return key < 0 ? -value : value;
+}
 
 /// The key of a float at a scale other than bits; nothing if it does not give the value back.
 template <class Value>
-std::optional<std::int64_t> decimal_key(Value value, double divisor) {
+std::optional<std::int64_t> decimal_key(Value value, std::uint32_t divisor) {
   const double scaled = static_cast<double>(value) * divisor;
-  if (!(std::abs(scaled) < kMostExact)) return std::nullopt;
-  const double key = std::round(scaled);
-  const auto back = static_cast<Value>(key / divisor);
+  if (!(std::abs(scaled) < static_cast<double>(kMostExact))) return std::nullopt;
+  const auto key = static_cast<std::int64_t>(std::round(scaled));
+  const auto back = static_cast<Value>(quotient(key, divisor));
   using Bits = UnsignedOfSize<sizeof(Value)>;
-  // A zero of either sign has key 0, which is the positive one.
-  if (std::bit_cast<Bits>(back + Value{0}) != std::bit_cast<Bits>(value)) return std::nullopt;
-  return static_cast<std::int64_t>(key);
+  if (std::bit_cast<Bits>(back) != std::bit_cast<Bits>(value)) return std::nullopt;
+  return key;
 }
 
 template <class Value>
@@ -62,8 +84,7 @@ template <class Value>
 Value value_of(std::int64_t key, KeyScale scale) {
   if constexpr (std::is_floating_point_v<Value>) {
     if (scale == KeyScale::bits) return value_of_bits_key<Value>(key);
-    return static_cast<Value>(static_cast<double>(key) /
-                              kDivisors[static_cast<std::size_t>(scale)]);
+    return static_cast<Value>(quotient(key, kDivisors[static_cast<std::size_t>(scale)]));
   } else {
     return static_cast<Value>(key);
   }

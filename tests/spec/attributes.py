@@ -4,6 +4,7 @@ import struct
 
 from container import Corrupt, Reader
 from entropy import RangeDecoder, decide
+from integers import clip
 from levels import Levels
 from adaptive import SignedNumbers, model, plain_number, unzigzag, wrapped
 from order import POINT, Grid, block, join_planes
@@ -93,7 +94,7 @@ def value_bits(key, scale, letter):
     if scale == BITS:
         sign = 1 << 8 * size - 1
         return sign | (-1 - key) % sign if key < 0 else key % sign
-    value = struct.pack("<" + letter, float(key) / DIVISORS[scale])
+    value = struct.pack("<" + letter, clip(key, -1 << 53, 1 << 53) / DIVISORS[scale])
     return int.from_bytes(value, "little")
 
 

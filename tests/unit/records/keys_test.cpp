@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <limits>
+#include <random>
 
 #include "hostile/targets/records.hpp"
 
@@ -48,6 +49,18 @@ TEST(Keys, KeepEveryBitOfFloats) {
   }
   const auto quiet = std::bit_cast<float>(std::uint32_t{0x7fc00000});
   EXPECT_EQ(check(std::vector<float>{1, quiet, -0.f}), KeyScale::bits);
+}
+
+TEST(Keys, QuotientsAreRoundedAsDivisionIs) {
+  std::mt19937_64 random(3);
+  const double divisors[] = {1, 10, 100, 1000, 1e4, 1e5, 1e6, 255, 65535};
+  Column value = std::vector<double>(1);
+  for (int i = 0; i < 90000; ++i) {
+    const auto key = static_cast<std::int64_t>(random()) >> (11 + random() % 50);
+    const std::size_t scale = random() % 9;
+    set_value(value, 0, static_cast<KeyScale>(scale), key);
+    ASSERT_EQ(std::get<std::vector<double>>(value)[0], static_cast<double>(key) / divisors[scale]);
+  }
 }
 
 TEST(Keys, KeepWholeTypes) {
