@@ -234,7 +234,7 @@ void write_residuals(const Seeds& seeds, const std::string& scene, const compact
     for (std::size_t i = 0; i < ranges.size(); ++i) {
       if ((kinds & 3) == 1) ranges[i] = input.field[i] + (ranges[i] - input.field[i]) / 64;
     }
-    append(out, encode_residual(input.segment(), ranges, input.levels, 0, decoded));
+    append(out, encode_residual(input.segment(), ranges, input.levels, {}, decoded));
     seeds.write("residual", scene + "-" + std::to_string(kinds), out);
   }
 }

@@ -15,6 +15,7 @@ Command add_info(CLI::App& root);
 Command add_project(CLI::App& root);
 Command add_compare(CLI::App& root);
 Command add_simulate(CLI::App& root);
+Command add_verify(CLI::App& root);
 Command add_render(CLI::App& root);
 Command add_sensors(CLI::App& root);
 Command add_calibrate(CLI::App& root);

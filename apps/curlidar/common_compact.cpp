@@ -44,6 +44,17 @@ void CompactOptions::add(CLI::App& app) {
   add_target(app, "--bits", CompactTarget::bits_per_point, 1000,
              "Wanted bits per coded return instead, attributes and metadata not counted; reached "
              "to 3 %, never exceeded");
+  add_target(app, "--max-error", CompactTarget::max_error, 100,
+             "Bound on the distance of every single point to its original, metres: checked before "
+             "the file is written, and kept in it for 'curlidar verify'");
+  const std::size_t place = targets_.size();
+  targets_.push_back({CompactTarget::lossless, 1, nullptr});
+  targets_[place].option = app.add_flag_callback(
+                                  "--lossless", [] {}, "Coordinates come back bit for bit")
+                               ->group(kGroup);
+  others_.push_back(
+      app.add_flag("--any-order", any_order_, "Give up the order of the points, and empty slots")
+          ->group(kGroup));
   others_.push_back(app.add_option("--effort", effort_, "1 (fast) .. 9 (smallest files)")
                         ->check(number_in(1, kMaxEffort))
                         ->capture_default_str()
@@ -85,6 +96,7 @@ void CompactOptions::apply(CompactSettings& settings) const {
     settings.target_value = chosen->value;
   }
   settings.effort = effort_;
+  settings.keep_order = !any_order_;
   settings.index = !no_index_;
   if (segments_ == "auto") return;
   if (no_index_) usage_error("--no-index makes one segment: leave --segments out");
@@ -100,7 +112,8 @@ Json breakdown_json(const CompactBreakdown& b) {
           {"modes", b.modes},
           {"coefficients", b.coefficients},
           {"labels", b.labels},
-          {"residual", b.residual}};
+          {"residual", b.residual},
+          {"records", b.records}};
 }
 
 Json statistics_json(const CompactStatistics& s) {
@@ -137,6 +150,7 @@ std::string breakdown_text(const CompactBreakdown& b, std::size_t returns) {
   add("coefficients", b.coefficients);
   add("labels", b.labels);
   add("residual", b.residual);
+  if (b.records > 0) add("order, loose points, corrections", b.records);
   add("all", total);
   return table.text();
 }

@@ -11,7 +11,8 @@
 
 namespace curlidar::app {
 
-/// --error, --error-nn, --step, --bits, --effort, --no-index. The object must live as long as the
+/// --error, --error-nn, --step, --bits, --max-error, --lossless, --any-order, --effort, --no-index,
+/// --segments. The object must live as long as the
 /// CLI::App.
 class CompactOptions {
  public:
@@ -34,7 +35,7 @@ class CompactOptions {
 
   std::vector<Target> targets_;
   std::uint32_t effort_ = CompactSettings{}.effort;
-  bool no_index_ = false;
+  bool no_index_ = false, any_order_ = false;
   std::string segments_ = "auto";
   std::vector<CLI::Option*> others_;
 };

@@ -75,6 +75,30 @@ Json compact_json(const CompactReport& c) {
           {"statistics", statistics_json(c.statistics)}};
 }
 
+Json records_json(const RecordReport& r) {
+  return {{"lattice", to_string(r.lattice)},
+          {"table", r.table.empty() ? Json() : Json(r.table)},
+          {"motion", r.motion},
+          {"share_on_lattice", r.share_on_lattice},
+          {"residual_mm",
+           {{"across", 1e3 * r.across_m}, {"up", 1e3 * r.up_m}, {"range", 1e3 * r.range_m}}},
+          {"firings", r.firings},
+          {"slots", r.slots},
+          {"range_unit_m", r.range_unit_m},
+          {"loose", r.loose},
+          {"corrected", r.corrected},
+          {"bound_m", r.promise.bound_m > 0 ? Json(r.promise.bound_m) : Json()},
+          {"bit_exact", r.promise.bit_exact},
+          {"bytes",
+           {{"rays", r.bytes.rays},
+            {"directions", r.bytes.directions},
+            {"loose", r.bytes.loose},
+            {"corrections", r.bytes.corrections},
+            {"order", r.bytes.order},
+            {"attributes", r.bytes.attributes}}},
+          {"notes", r.notes}};
+}
+
 Json report_json(const EncodeReport& report, Profile profile, const std::string& preset) {
   Json stages = Json::object();
   for (const StageTime& stage : report.stages_ms) stages[stage.stage] = stage.ms;
@@ -83,6 +107,7 @@ Json report_json(const EncodeReport& report, Profile profile, const std::string&
                {"points_in", report.points_in}, {"points_coded", report.points_coded},
                {"bytes", report.bytes},         {"bits_per_point", report.bits_per_point}};
   json.update(report.compact ? compact_json(*report.compact) : paper_json(report, preset));
+  if (report.records) json["records"] = records_json(*report.records);
   json["dropped"] = {{"outliers", counts.outliers},
                      {"out_of_range", counts.out_of_range},
                      {"out_of_fov", counts.out_of_fov},

@@ -35,9 +35,11 @@ struct EncodeSettings {
 struct CompactBreakdown {
   double header = 0;  ///< container, parameters, rows, index
   double mask = 0, partition = 0, modes = 0, coefficients = 0, labels = 0, residual = 0;
+  /// Of files with every return: directions, loose points, corrections, order.
+  double records = 0;
 
   double total() const {
-    return header + mask + partition + modes + coefficients + labels + residual;
+    return header + mask + partition + modes + coefficients + labels + residual + records;
   }
 };
 
@@ -69,6 +71,45 @@ struct CompactReport {
   CompactStatistics statistics;
 };
 
+/// How exactly a file with every return says that its points come back.
+struct RecordPromise {
+  bool bit_exact = false;
+  double bound_m = 0;  ///< no point lies farther from its original; 0: nothing is promised
+
+  friend bool operator==(const RecordPromise&, const RecordPromise&) = default;
+};
+
+/// What a file with every return holds beside its image, in bytes with frames.
+struct RecordBytes {
+  std::size_t rays = 0, directions = 0, loose = 0, corrections = 0, order = 0, attributes = 0;
+};
+
+/// How the directions of a file with every return are coded.
+enum class RecordLattice {
+  none,   ///< not at all: points one after the other
+  rings,  ///< rings on even columns, with offsets where the target needs them
+  rays,   ///< the sensor's own rays
+};
+const char* to_string(RecordLattice lattice);  ///< "none", "rings", "rays"
+
+/// What encoding every return found and reached.
+struct RecordReport {
+  RecordLattice lattice = RecordLattice::none;
+  std::string table;            ///< name of the known rays, empty if they are in the file
+  bool motion = false;          ///< motion compensation was undone
+  std::size_t loose = 0;        ///< returns without a cell
+  std::size_t corrected = 0;    ///< points that corrections changed
+  double share_on_lattice = 0;  ///< of the returns, if the lattice is of rays
+  /// Median distances from the lattice of rays, along the row, out of it, and of ranges from the
+  /// unit, metres.
+  double across_m = 0, up_m = 0, range_m = 0;
+  std::uint32_t firings = 0, slots = 0;
+  double range_unit_m = 0;
+  RecordPromise promise;
+  RecordBytes bytes;
+  std::vector<std::string> notes;  ///< what a user should know, one sentence each
+};
+
 struct EncodeReport {
   std::string sensor;            ///< name of the profile used
   std::size_t points_in = 0;     ///< returns of the input
@@ -83,6 +124,7 @@ struct EncodeReport {
   /// The paper's compression percentage: (8 B a coefficient + 4 bits a cell) / 24 B a point.
   double cp_paper_percent = 0;
   std::optional<CompactReport> compact;  ///< of Profile::compact, whose files leave the above 0
+  std::optional<RecordReport> records;   ///< of compact files with every return
   std::vector<StageTime> stages_ms;
 };
 
@@ -144,6 +186,16 @@ struct CompactContents {
   std::vector<std::uint8_t> layer;
 };
 
+/// What is special about a file with every return.
+struct RecordContents {
+  RecordLattice lattice = RecordLattice::none;
+  std::size_t loose = 0;
+  std::uint32_t firings = 0, slots = 0;
+  bool motion = false;
+  std::size_t slots_of_cloud = 0;
+  RecordPromise promise;
+};
+
 /// A decoded file: everything it holds, nothing reconstructed yet.
 struct DecodedScan {
   Profile profile = Profile::compact;
@@ -151,8 +203,12 @@ struct DecodedScan {
   std::optional<PaperSettings> paper;      ///< of the paper's profiles
   std::optional<CompactContents> compact;  ///< of Profile::compact
   std::shared_ptr<const Field> field;
-  /// Compact files: the coded returns in raster order, the same doubles on every machine. Empty in
-  /// the paper's profiles, whose returns the field gives.
+  /// Files with every return: the cloud as it was encoded, slot by slot. Not there if only a part
+  /// was decoded.
+  std::optional<Cloud> cloud;
+  std::optional<RecordContents> records;  ///< of files with every return
+  /// Compact files: the coded returns in raster order, then those without a cell; the same doubles
+  /// on every machine. Empty in the paper's profiles, whose returns the field gives.
   std::vector<Vec3> points;
   /// What should be there and is not, one sentence each: the file was cut off.
   std::vector<std::string> missing;
@@ -191,8 +247,9 @@ struct ReconstructSettings {
 };
 
 /// The cloud seen on an R_row x R_col times denser grid. With factors 1 x 1 and masks: the coded
-/// returns one for one with their attributes; otherwise attributes of the nearest coded return.
-/// Compact files cut off or decoded in part give what is there.
+/// returns one for one with their attributes, or the encoded cloud of files with every return;
+/// otherwise attributes of the nearest coded return. Compact files cut off or decoded in part give
+/// what is there.
 Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& settings = {});
 
 }  // namespace curlidar

@@ -28,11 +28,24 @@ enum class CompactTarget {
   error_nn,        ///< the larger of the two mean nearest-neighbour distances, metres
   step,            ///< the field's step D, metres: one encoding, no search
   bits_per_point,  ///< all bytes but attributes and metadata, in bits per coded return
+  max_error,       ///< a bound on the distance of every decoded return to its original, metres:
+                   ///< checked before the file is written, and kept in it
+  lossless,        ///< coordinates come back bit for bit; target_value is ignored
+};
+
+/// Which returns a compact file holds.
+enum class Coverage {
+  automatic,     ///< every return, unless columns or limits of range are given
+  every_return,  ///< all of them, in their slots: NaN and zero points keep their places
+  image,         ///< those of a depth image: one a cell, within the limits
 };
 
 /// Parameters of Profile::compact. Rows are always the true rings.
 struct CompactSettings {
-  /// Columns in a turn; 0 = those of an organised cloud, else kCompactColumns.
+  Coverage coverage = Coverage::automatic;
+  /// Every return: keep the order of the points, and empty slots. False writes cell by cell.
+  bool keep_order = true;
+  /// Columns of an image's turn; 0 = those of an organised cloud, else kCompactColumns.
   std::uint32_t columns = 0;
   double min_range_m = 0;
   RangeLimit max_range{};  ///< all 0 = everything
@@ -41,8 +54,8 @@ struct CompactSettings {
   std::uint32_t effort = 4;    ///< 1 (fast) .. 9 (smallest)
   /// Segments that can be decoded alone and an index of them.
   bool index = true;
-  /// Bands of rows and sectors of columns that make a segment each; 0 = as many as cost 2 % at most,
-  /// or one without an index. Roots of 16 x 16 cells start anew in every segment.
+  /// Bands of rows and sectors of columns that make a segment each; 0 = as many as cost 2 % at
+  /// most, or one without an index. Roots of 16 x 16 cells start anew in every segment.
   std::uint32_t bands = 0, sectors = 0;
 };
 /// Columns for clouds that bring none. At 2048 a return lies 0.05 degrees from its cell's middle on
@@ -52,6 +65,8 @@ inline constexpr std::uint32_t kMaxEffort = 9;
 
 /// invalid_argument unless every value makes sense.
 Status validate(const CompactSettings& settings);
+/// What the coverage comes to.
+bool keeps_every_return(const CompactSettings& settings);
 
 /// Distances between neighbouring returns above which the surface is taken to be broken.
 struct CliffThresholds {

@@ -12,6 +12,7 @@
 #include "base/try.hpp"
 #include "codec/compact_field.hpp"
 #include "codec/compact_model.hpp"
+#include "codec/record_file.hpp"
 #include "format/attributes_chunk.hpp"
 #include "format/metadata_chunk.hpp"
 
@@ -189,19 +190,10 @@ CompactContents contents_of(const compact::DecodedScan& scan, bool partition) {
   return out;
 }
 
-/// Keeps the values of the returns `kept`.
-void keep_returns(std::vector<Attribute>& attributes, const std::vector<std::uint32_t>& kept,
-                  std::size_t returns) {
-  Cloud all;
-  all.positions.resize(returns);
-  all.attributes = std::move(attributes);
-  attributes = std::move(select(all, kept).attributes);
-}
-
 }  // namespace
 
 bool is_compact(const std::vector<Chunk>& chunks) {
-  return find_chunk(chunks, ChunkType::compact_parameters) != nullptr;
+  return find_chunk(chunks, ChunkType::compact_parameters) != nullptr || has_records(chunks);
 }
 
 Result<CompactImage> decode_compact_image(ByteSpan bytes, const DecodeOptions& options) {
@@ -215,56 +207,144 @@ Result<CompactImage> decode_compact_image(ByteSpan bytes, const DecodeOptions& o
                       {scan.parameters.rows, scan.parameters.columns, std::move(scan.range)}};
 }
 
-Result<DecodedScan> decode_compact(const PartialContainer& container,
-                                   const DecodeOptions& options) {
+namespace {
+
+/// What a decoded image gives to whoever asked.
+struct ImageParts {
+  compact::DecodedScan scan;
+  std::optional<RegionFilter> filter;
+};
+
+/// Chunks that number all returns of a scan, so that every mask must be known to find a part.
+bool numbers_returns(const std::vector<Chunk>& chunks) {
+  return find_chunk(chunks, ChunkType::attributes) != nullptr || has_records(chunks);
+}
+
+Result<ImageParts> decode_image(const PartialContainer& container, const DecodeOptions& options) {
   const compact::ScanChunks chunks = scan_chunks(container);
   const compact::ScanLimits limits{options.limits.max_cells};
-  const Chunk* attributes_chunk = find_chunk(container.chunks, ChunkType::attributes);
   compact::ScanOptions scan_options;
   scan_options.field_only = options.field_only;
   scan_options.keep_nodes = options.partition;
   scan_options.threads = options.threads;
-  std::optional<RegionFilter> filter;
+  ImageParts out;
   if (options.region) {
     CURLIDAR_TRY(check_region(*options.region));
     CURLIDAR_TRY_ASSIGN(header, decode_scan_header(chunks, limits));
-    filter.emplace(*options.region, header.parameters);
-    if (filter->empty()) {
+    out.filter.emplace(*options.region, header.parameters);
+    if (out.filter->empty()) {
       return Error{ErrorCode::invalid_argument,
                    fmt::format("the region holds none of the scan's {} rings and {} columns",
                                header.parameters.rows, header.parameters.columns)};
     }
-    // Attributes are numbered by all returns, so that every mask must be known to find a part.
-    if (attributes_chunk == nullptr) scan_options.region = filter->bounds();
+    if (!numbers_returns(container.chunks)) scan_options.region = out.filter->bounds();
   }
   CURLIDAR_TRY_ASSIGN(scan, decode_scan(chunks, limits, scan_options));
+  out.scan = std::move(scan);
+  return out;
+}
 
-  DecodedScan out;
-  out.profile = Profile::compact;
-  for (const compact::Missing& missing : scan.missing) out.missing.push_back(to_string(missing));
-  const auto returns = static_cast<std::size_t>(
+compact::Image image_of(const compact::DecodedScan& scan) {
+  return {scan.parameters.rows, scan.parameters.columns, scan.range};
+}
+
+RecordContents contents_of(const DecodedRecords& records, const compact::RowTable& table,
+                           bool has_image) {
+  RecordContents out;
+  out.loose = records.loose;
+  out.slots_of_cloud = records.order.slots();
+  if (!has_image) return out;
+  out.lattice = table.rays ? RecordLattice::rays : RecordLattice::rings;
+  if (!table.rays) return out;
+  out.firings = static_cast<std::uint32_t>(table.rays->firings.size());
+  out.slots = table.rays->slots;
+  out.motion = !table.rays->motion.none();
+  return out;
+}
+
+/// Points and attributes of a file with every return, and its cloud.
+Status take_records(const PartialContainer& container, const compact::RowTable& table,
+                    const compact::Image& image, const DecodeOptions& options, DecodedScan& out) {
+  CURLIDAR_TRY_ASSIGN(
+      records, decode_records(container.chunks, table, image, !options.field_only, options.limits));
+  out.records = contents_of(records, table, image.rows > 0);
+  CURLIDAR_TRY_ASSIGN(promise, read_promise(container.chunks));
+  if (!options.field_only) out.records->promise = promise;
+  out.coded_returns = records.points.size();
+  out.attributes = attributes_of_records(records);
+  out.cloud = assemble_cloud(records);
+  out.points = std::move(records.points);
+  return {};
+}
+
+/// Points and attributes of an image alone.
+Status take_image(const PartialContainer& container, const compact::DecodedScan& scan,
+                  const DecodeOptions& options, DecodedScan& out) {
+  const Chunk* chunk = find_chunk(container.chunks, ChunkType::attributes);
+  out.coded_returns = static_cast<std::size_t>(
       std::count_if(scan.range.begin(), scan.range.end(), [](auto range) { return range > 0; }));
-  if (attributes_chunk != nullptr && scan.missing.empty()) {
+  if (chunk != nullptr && scan.missing.empty()) {
     CURLIDAR_TRY_ASSIGN(attributes,
-                        read_attributes(*attributes_chunk, returns, options.limits.max_bytes));
+                        read_attributes(*chunk, out.coded_returns, options.limits.max_bytes));
     out.attributes = std::move(attributes);
   }
-  out.sensor = sensor_of(scan.table, scan);
-  out.coded_returns = returns;
-  out.compact = contents_of(scan, options.partition);
-  if (filter) {
-    const std::vector<std::uint32_t> kept = crop(scan, *filter);
-    out.coded_returns = kept.size();
-    keep_returns(out.attributes, kept, returns);
+  CURLIDAR_TRY_ASSIGN(points, decode_cell_points(container.chunks, scan.table, image_of(scan)));
+  out.points = std::move(points);
+  return {};
+}
+
+/// Leaves only what lies in the region. Points without a cell belong to no ring: they are in no
+/// region.
+void crop_to(const RegionFilter& filter, compact::DecodedScan& scan, DecodedScan& out) {
+  const std::vector<std::uint32_t> kept = crop(scan, filter);
+  Cloud records;
+  records.positions = std::move(out.points);
+  records.attributes = std::move(out.attributes);
+  Cloud part = select(records, kept);
+  out.points = std::move(part.positions);
+  out.attributes = std::move(part.attributes);
+  out.coded_returns = kept.size();
+  out.cloud.reset();
+}
+
+}  // namespace
+
+Result<DecodedScan> decode_compact(const PartialContainer& container,
+                                   const DecodeOptions& options) {
+  DecodedScan out;
+  out.profile = Profile::compact;
+  const bool records = has_records(container.chunks);
+  const bool has_image = find_chunk(container.chunks, ChunkType::compact_parameters) != nullptr;
+  ImageParts parts;
+  if (has_image) {
+    CURLIDAR_TRY_ASSIGN(decoded, decode_image(container, options));
+    parts = std::move(decoded);
+  } else if (options.region) {
+    return Error{ErrorCode::invalid_argument,
+                 "the file holds points without rings: no region of it can be told"};
   }
+  compact::DecodedScan& scan = parts.scan;
+  for (const compact::Missing& missing : scan.missing) out.missing.push_back(to_string(missing));
+  if (records && scan.missing.empty()) {
+    CURLIDAR_TRY(take_records(container, scan.table, image_of(scan), options, out));
+  } else {
+    CURLIDAR_TRY(take_image(container, scan, options, out));
+  }
+  if (has_image) {
+    out.sensor = sensor_of(scan.table, scan);
+    out.compact = contents_of(scan, options.partition);
+  }
+  if (parts.filter) crop_to(*parts.filter, scan, out);
   if (const Chunk* chunk = find_chunk(container.chunks, ChunkType::metadata)) {
     CURLIDAR_TRY_ASSIGN(metadata, read_metadata(*chunk));
     out.metadata = std::move(metadata);
     const auto name = out.metadata.find(kSensorKey);
     if (name != out.metadata.end()) out.sensor.name = name->second;
   }
-  out.points = points_of(scan.table, {scan.parameters.rows, scan.parameters.columns, scan.range});
-  out.field = std::make_shared<CompactField>(std::move(scan));
+  if (out.cloud) out.cloud->metadata = out.metadata;
+  out.field = has_image
+                  ? std::shared_ptr<const Field>(std::make_shared<CompactField>(std::move(scan)))
+                  : std::make_shared<EmptyField>();
   return out;
 }
 

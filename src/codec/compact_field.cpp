@@ -188,4 +188,9 @@ void CompactField::evaluate_row(double row, std::span<const double> columns, boo
   }
 }
 
+void EmptyField::evaluate_row(double, std::span<const double>, bool,
+                              std::span<double> ranges) const {
+  std::fill(ranges.begin(), ranges.end(), kNan);
+}
+
 }  // namespace curlidar

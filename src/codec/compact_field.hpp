@@ -58,4 +58,18 @@ class CompactField : public Field {
   std::vector<std::uint32_t> nearest_;    ///< coded cell nearest to each cell
 };
 
+/// The field of a file without one: nothing anywhere.
+class EmptyField : public Field {
+ public:
+  EmptyField() : lattice_(Lattice::from_rings({0}, 4)) {}
+
+  const Lattice& lattice() const override { return lattice_; }
+  void evaluate_row(double row, std::span<const double> columns, bool masked,
+                    std::span<double> ranges) const override;
+  bool occupied(std::uint32_t, std::uint32_t) const override { return false; }
+
+ private:
+  Lattice lattice_;
+};
+
 }  // namespace curlidar

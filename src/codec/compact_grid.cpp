@@ -102,31 +102,6 @@ double max_range_of(const CompactSettings& settings, const Cloud& cloud) {
   return std::min(resolve_max_range(settings.max_range, cloud, {}), kMaxCompactRangeM);
 }
 
-GriddedScan take_cells(const Cloud& cloud, std::vector<double> elevations, double min_range,
-                       double max_range) {
-  GriddedScan out;
-  out.rows = cloud.height;
-  out.columns = cloud.width;
-  out.elevations = std::move(elevations);
-  out.cell_centres = true;
-  out.sensor = "grid";
-  out.range.assign(cloud.size(), 0);
-  out.source.assign(cloud.size(), kNoPoint);
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!is_return(cloud.positions[i])) continue;
-    ++out.counts.returns;
-    const double range = norm(cloud.positions[i]);
-    if (range < min_range || range > max_range) {
-      ++out.counts.out_of_range;
-      continue;
-    }
-    ++out.counts.kept;
-    out.range[i] = range;
-    out.source[i] = static_cast<std::uint32_t>(i);
-  }
-  return out;
-}
-
 /// Columns of an organised cloud: the side that is not the rings'.
 std::uint32_t default_columns(const Cloud& cloud, const Detection& detection) {
   if (!cloud.organised()) return kCompactColumns;
@@ -148,17 +123,7 @@ Result<GriddedScan> project_rings(const Cloud& cloud, const EncodeSettings& sett
   }
   const std::uint32_t columns =
       settings.compact.columns != 0 ? settings.compact.columns : default_columns(cloud, detection);
-  GriddedScan out;
-  RangeImage image = fill_range_image(
-      cloud, detection.ring_of_point, Lattice::from_rings(detection.ring_elevations, columns),
-      RowRule::rings, settings.compact.min_range_m, max_range, {}, out.counts);
-  out.rows = image.lattice.rows();
-  out.columns = columns;
-  out.range = std::move(image.range);
-  out.source = std::move(image.source);
-  out.elevations = std::move(detection.ring_elevations);
-  out.sensor = detection.sensor.name;
-  return out;
+  return ring_scan(cloud, detection, columns, settings.compact.min_range_m, max_range);
 }
 
 /// Sums over the returns of one row; weights are squared ranges, so that distances in metres count.
@@ -214,6 +179,52 @@ double mean_distance(const Cloud& cloud, const GriddedScan& scan, const RowModel
 
 }  // namespace
 
+std::optional<GriddedScan> cell_centre_scan(const Cloud& cloud, double min_range_m,
+                                            double max_range_m) {
+  std::optional<std::vector<double>> elevations = rows_of_cell_centres(cloud);
+  if (!elevations) return std::nullopt;
+  GriddedScan out;
+  out.rows = cloud.height;
+  out.columns = cloud.width;
+  out.elevations = *std::move(elevations);
+  out.cell_centres = true;
+  out.min_range_m = min_range_m;
+  out.max_range_m = max_range_m;
+  out.sensor = "grid";
+  out.range.assign(cloud.size(), 0);
+  out.source.assign(cloud.size(), kNoPoint);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!is_return(cloud.positions[i])) continue;
+    ++out.counts.returns;
+    const double range = norm(cloud.positions[i]);
+    if (range < min_range_m || range > max_range_m) {
+      ++out.counts.out_of_range;
+      continue;
+    }
+    ++out.counts.kept;
+    out.range[i] = range;
+    out.source[i] = static_cast<std::uint32_t>(i);
+  }
+  return out;
+}
+
+GriddedScan ring_scan(const Cloud& cloud, const Detection& detection, std::uint32_t columns,
+                      double min_range_m, double max_range_m) {
+  GriddedScan out;
+  RangeImage image = fill_range_image(cloud, detection.ring_of_point,
+                                      Lattice::from_rings(detection.ring_elevations, columns),
+                                      RowRule::rings, min_range_m, max_range_m, {}, out.counts);
+  out.rows = image.lattice.rows();
+  out.columns = columns;
+  out.range = std::move(image.range);
+  out.source = std::move(image.source);
+  out.min_range_m = min_range_m;
+  out.max_range_m = max_range_m;
+  out.elevations = detection.ring_elevations;
+  out.sensor = detection.sensor.name;
+  return out;
+}
+
 Result<GriddedScan> grid_scan(const Cloud& cloud, const EncodeSettings& settings) {
   if (count_returns(cloud) == 0) {
     return Error{ErrorCode::invalid_argument,
@@ -221,17 +232,17 @@ Result<GriddedScan> grid_scan(const Cloud& cloud, const EncodeSettings& settings
   }
   const double max_range = max_range_of(settings.compact, cloud);
   const bool own_columns = settings.compact.columns == 0 || settings.compact.columns == cloud.width;
-  std::optional<std::vector<double>> rows;
-  if (!settings.sensor && own_columns) rows = rows_of_cell_centres(cloud);
+  std::optional<GriddedScan> centres;
+  if (!settings.sensor && own_columns) {
+    centres = cell_centre_scan(cloud, settings.compact.min_range_m, max_range);
+  }
   GriddedScan scan;
-  if (rows) {
-    scan = take_cells(cloud, *std::move(rows), settings.compact.min_range_m, max_range);
+  if (centres) {
+    scan = *std::move(centres);
   } else {
     CURLIDAR_TRY_ASSIGN(projected, project_rings(cloud, settings, max_range));
     scan = std::move(projected);
   }
-  scan.min_range_m = settings.compact.min_range_m;
-  scan.max_range_m = max_range;
   if (scan.counts.kept == 0) {
     return Error{
         ErrorCode::invalid_argument,

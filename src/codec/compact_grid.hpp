@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,15 @@ struct GriddedScan {
 /// given sensor's profile tells, columns the settings' or an organised cloud's own, and the return
 /// nearest a cell's middle keeps it. Errors: no return, a limited-field scanner, nothing left.
 Result<GriddedScan> grid_scan(const Cloud& cloud, const EncodeSettings& settings);
+
+/// The lattice of a cloud whose points are cell centres; nothing if it has none.
+std::optional<GriddedScan> cell_centre_scan(const Cloud& cloud, double min_range_m,
+                                            double max_range_m);
+
+/// The returns of rings that are known on even columns, those within max_range_m; of several in a
+/// cell the one nearest its middle.
+GriddedScan ring_scan(const Cloud& cloud, const Detection& detection, std::uint32_t columns,
+                      double min_range_m, double max_range_m);
 
 /// How rows look at their returns: at elevation + height / range.
 struct RowModel {

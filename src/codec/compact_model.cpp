@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "compact/scan_points.hpp"
+#include "codec/cell_points.hpp"
 #include "image/range_image.hpp"
 
 namespace curlidar {
@@ -86,22 +86,16 @@ void set_range_offsets(compact::RowTable& table, const std::vector<double>& offs
   if (none) table.range_offset.clear();
 }
 
-OwnErrors own_errors(const Cloud& cloud, const GriddedScan& scan, const compact::RowTable& table,
-                     const compact::Image& image) {
-  const compact::PointTable points(table, scan.rows, scan.columns);
+OwnErrors own_errors(const Cloud& cloud, const GriddedScan& scan, const std::vector<Vec3>& points) {
   OwnErrors errors;
   double sum = 0, squares = 0;
-  for (std::uint32_t row = 0; row < scan.rows; ++row) {
-    for (std::uint32_t column = 0; column < scan.columns; ++column) {
-      const std::size_t cell = scan.cell(row, column);
-      if (scan.source[cell] == kNoPoint) continue;
-      const Vec3 gap =
-          points.metres(row, column, image.range[cell]) - cloud.positions[scan.source[cell]];
-      const double distance = norm(gap);
-      sum += distance;
-      squares += distance * distance;
-      errors.max = std::max(errors.max, distance);
-    }
+  std::size_t i = 0;
+  for (const std::uint32_t source : scan.source) {
+    if (source == kNoPoint) continue;
+    const double distance = norm(points[i++] - cloud.positions[source]);
+    sum += distance;
+    squares += distance * distance;
+    errors.max = std::max(errors.max, distance);
   }
   const auto n = static_cast<double>(std::max<std::size_t>(scan.counts.kept, 1));
   errors.mean = sum / n;
@@ -132,16 +126,21 @@ CellOffsets cell_offsets(const Cloud& cloud, const GriddedScan& scan,
   return {sum.across / n, sum.along / n};
 }
 
-std::vector<Vec3> points_of(const compact::RowTable& table, const compact::Image& image) {
-  const compact::PointTable points(table, image.rows, image.columns);
-  std::vector<Vec3> out;
-  std::size_t cell = 0;
-  for (std::uint32_t row = 0; row < image.rows; ++row) {
-    for (std::uint32_t column = 0; column < image.columns; ++column, ++cell) {
-      if (image.range[cell] > 0) out.push_back(points.metres(row, column, image.range[cell]));
+std::vector<Vec3> points_of(const CompactModel& model, const compact::Image& decoded) {
+  std::vector<DirectionOffset> offsets;
+  if (model.direction_step > 0) {
+    std::size_t i = 0;
+    for (const std::int32_t range : decoded.range) {
+      if (range <= 0) continue;
+      const std::int64_t step = direction_step(range, model.direction_step);
+      const auto rounded = [&](std::int32_t offset) {
+        return static_cast<std::int32_t>(div_round(offset, step) * step);
+      };
+      const DirectionOffset& exact = model.offsets[i++];
+      offsets.push_back({rounded(exact.across), rounded(exact.up)});
     }
   }
-  return out;
+  return cell_points(model.table, decoded, offsets);
 }
 
 }  // namespace curlidar

@@ -13,6 +13,7 @@
 #include "base/try.hpp"
 #include "cloud/neighbours.hpp"
 #include "format/container.hpp"
+#include "records/grid.hpp"
 
 namespace curlidar {
 namespace {
@@ -53,7 +54,7 @@ compact::Steps steps_of_step(double metres) {
   return compact::steps_for_step(static_cast<std::int32_t>(to_units(metres)));
 }
 
-Result<double> worse_direction(const CompactJob& job, const compact::Image& decoded) {
+Result<double> worse_direction(const CompactJob& job, const std::vector<Vec3>& points) {
   Cloud original, back;
   for (const Vec3& p : job.cloud.positions) {
     const double range = norm(p);
@@ -61,7 +62,8 @@ Result<double> worse_direction(const CompactJob& job, const compact::Image& deco
       original.positions.push_back(p);
     }
   }
-  back.positions = points_of(job.model.table, decoded);
+  back.positions = points;
+  for (const std::uint32_t i : job.loose) back.positions.push_back(job.cloud.positions[i]);
   double worse = 0;
   for (const auto& [from, to] : {std::pair{&original, &back}, std::pair{&back, &original}}) {
     CURLIDAR_TRY_ASSIGN(distances, distances_to_nearest(*from, *to, job.threads));
@@ -150,7 +152,8 @@ Error out_of_reach(const CompactJob& job, double reached) {
 
 /// The part of the wanted error that is left for ranges beside what directions take.
 double range_share(const CompactJob& job, double error_m) {
-  const double directions = own_errors(job.cloud, job.scan, job.model.table, job.model.image).mean;
+  const double directions =
+      own_errors(job.cloud, job.scan, points_of(job.model, job.model.image)).mean;
   return std::sqrt(std::max(error_m * error_m - directions * directions, 0.01 * error_m * error_m));
 }
 
@@ -229,6 +232,19 @@ class TargetSearch {
   std::uint32_t encodings_ = 0;
 };
 
+/// The chunk of the model's offsets for ranges as decoded.
+std::vector<std::byte> encode_offsets(const CompactModel& model, const compact::Image& decoded) {
+  std::vector<std::uint8_t> occupied;
+  std::vector<std::int32_t> ranges;
+  occupied.reserve(decoded.range.size());
+  for (const std::int32_t range : decoded.range) {
+    occupied.push_back(range > 0 ? 1 : 0);
+    if (range > 0) ranges.push_back(range);
+  }
+  const CellGrid grid{decoded.rows, decoded.columns, occupied, 0};
+  return encode_directions(grid, ranges, model.offsets, model.direction_step).bytes;
+}
+
 }  // namespace
 
 Result<CompactTrial> try_steps(const CompactJob& job, const compact::Steps& steps,
@@ -240,18 +256,25 @@ Result<CompactTrial> try_steps(const CompactJob& job, const compact::Steps& step
   settings.bands = job.settings.bands;
   settings.sectors = job.settings.sectors;
   settings.threads = job.threads;
+  settings.max_error = job.max_error;
   CURLIDAR_TRY_ASSIGN(encoded, encode_scan(job.model.image, job.model.table, settings));
   CompactTrial trial;
   trial.steps = steps;
-  trial.errors = own_errors(job.cloud, job.scan, job.model.table, encoded.decoded);
+  const std::vector<Vec3> points = points_of(job.model, encoded.decoded);
+  trial.errors = own_errors(job.cloud, job.scan, points);
   ContainerWriter writer;
   for (const compact::ScanChunk& chunk : encoded.chunks) {
     writer.add(static_cast<ChunkType>(chunk.part), chunk.payload);
   }
-  trial.bits_per_point = 8.0 * static_cast<double>(std::move(writer).finish().size()) /
-                         static_cast<double>(job.scan.counts.kept);
+  if (job.model.direction_step > 0) {
+    trial.directions = encode_offsets(job.model, encoded.decoded);
+    writer.add(ChunkType::directions, trial.directions);
+  }
+  trial.bits_per_point =
+      (8.0 * static_cast<double>(std::move(writer).finish().size()) + job.beside_bits) /
+      static_cast<double>(job.scan.counts.kept + job.loose.size());
   if (job.settings.target == CompactTarget::error_nn) {
-    CURLIDAR_TRY_ASSIGN(distance, worse_direction(job, encoded.decoded));
+    CURLIDAR_TRY_ASSIGN(distance, worse_direction(job, points));
     trial.error_nn_m = distance;
   }
   trial.encoded = std::move(encoded);
@@ -317,6 +340,10 @@ double first_error_guess(const CompactSettings& settings) {
       return settings.target_value / 6;
     case CompactTarget::bits_per_point:
       return usual_error_at(settings.target_value);
+    case CompactTarget::max_error:
+      return 0.35 * settings.target_value;
+    case CompactTarget::lossless:
+      return 1e-4;
   }
   return settings.target_value;
 }

@@ -24,12 +24,17 @@ struct CompactJob {
   ProgressCallback progress{};
   double start = 0;  ///< logarithm of the scale of the usual steps at which the search begins
   compact::FieldKind kind = compact::FieldKind::by_error;
+  /// Points of the cloud that are coded apart, nearly exactly.
+  std::vector<std::uint32_t> loose{};
+  double beside_bits = 0;      ///< what a file takes besides its image and offsets of directions
+  std::int32_t max_error = 0;  ///< of a range, Q16 metres; 0 = none
 };
 
 /// One encoding and what it gave.
 struct CompactTrial {
   compact::Steps steps;
   compact::EncodedScan encoded;
+  std::vector<std::byte> directions;  ///< payload of that chunk; empty: none
   OwnErrors errors;
   double error_nn_m = 0;        ///< measured only if it is the target
   double bits_per_point = 0;    ///< of a file without attributes and metadata

@@ -41,6 +41,10 @@ constexpr std::array<NamedPreset, 4> kPresets{{
 constexpr std::array<Profile, 4> kProfiles{Profile::compact, Profile::paper, Profile::paper_1to1,
                                            Profile::paper_global};
 
+bool limits_range(const RangeLimit& limit) {
+  return limit.metres != 0 || limit.percentile != 0;
+}
+
 }  // namespace
 
 const char* to_string(Profile profile) {
@@ -66,6 +70,11 @@ Result<Profile> profile_by_name(std::string_view name) {
                    "'; known: compact, paper, paper-1to1, paper-global"};
 }
 
+bool keeps_every_return(const CompactSettings& s) {
+  if (s.coverage != Coverage::automatic) return s.coverage == Coverage::every_return;
+  return s.columns == 0 && s.min_range_m == 0 && !limits_range(s.max_range);
+}
+
 Status validate(const CompactSettings& s) {
   constexpr std::uint32_t kMaxParts = 64;
   const auto invalid = [](std::string what) {
@@ -85,6 +94,15 @@ Status validate(const CompactSettings& s) {
   if (s.bands > kMaxParts || s.sectors > kMaxParts) {
     return invalid("a scan has at most 64 bands of rows and 64 sectors of columns");
   }
+  const bool limited = s.columns != 0 || s.min_range_m > 0 || limits_range(s.max_range);
+  if (s.coverage == Coverage::every_return && limited) {
+    return invalid("a file with every return has no columns or limits of range to choose");
+  }
+  if (!keeps_every_return(s) &&
+      (s.target == CompactTarget::max_error || s.target == CompactTarget::lossless)) {
+    return invalid("only files with every return hold a bound: leave columns and limits of range");
+  }
+  if (s.target == CompactTarget::lossless) return {};
   const bool metres = s.target != CompactTarget::bits_per_point;
   if (!(s.target_value > 0) || s.target_value > (metres ? 100 : 1000)) {
     return invalid(metres ? "the wanted error or step must be above 0 and at most 100 m"

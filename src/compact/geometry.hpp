@@ -74,8 +74,8 @@ class Geometry {
   std::vector<std::uint32_t> column_azimuths_;  ///< encoder angles of a table's firings
 };
 
-/// Height of the field's centre above the sensor's origin, Q16 metres: the mean of the rays' heights,
-/// rounded down.
+/// Height of the field's centre above the sensor's origin, Q16 metres: the mean of the rays'
+/// heights, rounded down.
 std::int32_t centre_height(const RayTable& rays);
 
 /// The azimuth of a column of the turn: -pi + 2 pi column / columns, rounded down.

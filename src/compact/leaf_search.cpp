@@ -236,8 +236,7 @@ std::optional<FittedLayer> LeafSearch::best_layer(const Members& members, std::u
       for (const std::uint32_t i : members) {
         if (cost >= least) break;
         cost +=
-            256 *
-            error(i, static_cast<std::int32_t>(surface.range_at(frame_, samples_.sights[i])));
+            256 * error(i, static_cast<std::int32_t>(surface.range_at(frame_, samples_.sights[i])));
       }
       if (cost >= least) continue;
       least = cost;

@@ -95,15 +95,16 @@ void start_from_field(const ResidualSegment& segment, std::size_t begin,
 }
 
 /// The residual that costs least in error and bits: the nearest, the next towards zero, or zero.
-std::int32_t best_residual(std::int32_t range, const CellLevels& levels, std::uint32_t lambda,
-                           ResidualSymbols& symbols) {
+std::int32_t best_residual(std::int32_t range, const CellLevels& levels,
+                           const ResidualBalance& balance, ResidualSymbols& symbols) {
   const std::int32_t nearest = levels.nearest(range);
-  if (nearest == 0 || lambda == 0) return nearest;
+  if (nearest == 0 || balance.lambda == 0) return nearest;
   std::int32_t best = nearest;
   std::int64_t best_cost = -1;
   for (const std::int32_t residual : {nearest, nearest > 0 ? nearest - 1 : nearest + 1, 0}) {
     const std::int64_t error = std::abs(range - levels.range(residual));
-    const std::int64_t cost = error * 65536 + std::int64_t{lambda} * symbols.cost(residual);
+    if (balance.max_error > 0 && residual != nearest && error > balance.max_error) continue;
+    const std::int64_t cost = error * 65536 + std::int64_t{balance.lambda} * symbols.cost(residual);
     if (best_cost < 0 || cost < best_cost) {
       best = residual;
       best_cost = cost;
@@ -116,14 +117,14 @@ std::int32_t best_residual(std::int32_t range, const CellLevels& levels, std::ui
 
 std::vector<std::byte> encode_residual(const ResidualSegment& segment,
                                        std::span<const std::int32_t> ranges,
-                                       const ResidualLevels& levels, std::uint32_t lambda,
+                                       const ResidualLevels& levels, const ResidualBalance& balance,
                                        std::span<std::int32_t> decoded) {
   start_from_field(segment, 0, decoded);
   RangeEncoder coder;
   code_segment(
       segment, levels, decoded,
       [&](std::size_t cell, const CellLevels& cell_levels, ResidualSymbols& symbols) {
-        return symbols.code(coder, best_residual(ranges[cell], cell_levels, lambda, symbols));
+        return symbols.code(coder, best_residual(ranges[cell], cell_levels, balance, symbols));
       },
       [](std::size_t) { return true; });
   return std::move(coder).finish();

@@ -35,13 +35,21 @@ struct ResidualLevels {
   std::uint64_t lattice_q32 = 0;
 };
 
+/// What an encoder balances.
+struct ResidualBalance {
+  /// What a bit is worth, in 1/256 of 1/65536 m; 0 takes the nearest level, and then
+  /// |decoded - range| of every coded cell is at most half a step, or half a lattice distance and
+  /// half of 1/65536 m.
+  std::uint32_t lambda = 0;
+  /// If not 0: levels farther off than this (1/65536 m) are taken only where none is nearer.
+  std::int32_t max_error = 0;
+};
+
 /// Codes `ranges` (1/65536 m, in [1, kMaxRangeQ16]) and gives the bytes; `decoded` receives what
-/// decode_residual will give (0 in empty cells). `lambda` is what a bit is worth, in 1/256 of
-/// 1/65536 m; 0 takes the nearest level, and then |decoded - range| of every coded cell is at most
-/// half a step, or half a lattice distance and half of 1/65536 m. O(cells).
+/// decode_residual will give (0 in empty cells). O(cells).
 std::vector<std::byte> encode_residual(const ResidualSegment& segment,
                                        std::span<const std::int32_t> ranges,
-                                       const ResidualLevels& levels, std::uint32_t lambda,
+                                       const ResidualLevels& levels, const ResidualBalance& balance,
                                        std::span<std::int32_t> decoded);
 
 /// Decodes what encode_residual wrote and returns how many rows are complete. Any bytes decode to

@@ -21,7 +21,7 @@ struct Effort {
   /// Of the residual layer: what a bit is worth, Q16 metres, and residual_cost_table.
   std::int64_t residual_lambda = 0;
   std::vector<std::int64_t> residual_costs;
-  std::uint32_t mask_effort = 1;
+  std::int32_t max_error = 0;  ///< of a range, Q16 metres; 0 = any
 };
 
 /// The search for an effort of 1..9 (clamped). `residual_step` 0: no residual layer follows.

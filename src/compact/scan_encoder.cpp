@@ -155,8 +155,15 @@ Result<EncodedScan> encode_scan(const Image& image, const RowTable& table,
   CURLIDAR_TRY(check_image(image));
   const ScanParameters parameters = parameters_for(image, settings);
   CURLIDAR_TRY(check_header(parameters, table));
-  const Effort effort = search_settings(settings.effort, parameters.step, parameters.residual_step,
-                                        settings.lambda_per_mille);
+  // On a lattice of ranges the caller knows them to lie on it.
+  if (settings.max_error > 0 && parameters.lattice_q32 == 0 &&
+      (parameters.residual_step == 0 || parameters.residual_step / 2 > settings.max_error)) {
+    return Error{ErrorCode::invalid_argument,
+                 "a largest error needs residuals in steps of at most twice it"};
+  }
+  Effort effort = search_settings(settings.effort, parameters.step, parameters.residual_step,
+                                  settings.lambda_per_mille);
+  effort.max_error = settings.max_error;
   const std::vector<SegmentPlace> places = segments_of(parameters);
   std::vector<EncodedSegment> segments(places.size());
   parallel_for(places.size(), settings.threads, [&](std::size_t i) {

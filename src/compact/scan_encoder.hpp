@@ -18,6 +18,9 @@ struct ScanSettings {
   Steps steps;
   std::uint32_t effort = kDefaultEffort;  ///< 1..9
   std::uint32_t lambda_per_mille = kLambdaPerMille;
+  /// Largest error of a range, Q16 metres, where a level is that near; needs a residual layer, in
+  /// steps of at most twice it or on a lattice. 0 = none.
+  std::int32_t max_error = 0;
   /// Segments; 0 = as many as cost about 2 % of the file at most.
   std::uint32_t bands = 0, sectors = 0;
   bool index = true;        ///< false also means one segment where bands and sectors are 0

@@ -91,14 +91,16 @@ void choose_leaves(const FieldState& state, const std::vector<std::int32_t>& tru
                    const Effort& effort, std::int32_t step,
                    const std::vector<std::int32_t>& leaf_of_cell,
                    std::vector<DecodedLeaf>& leaves) {
+  constexpr std::int64_t kMust = std::int64_t{1} << 56;  // above any gain of a leaf's cells
   std::vector<std::int64_t> gain(leaves.size(), 0);
   const auto last = static_cast<std::int64_t>(effort.residual_costs.size()) - 1;
   for (std::size_t cell = 0; cell < leaf_of_cell.size(); ++cell) {
     if (leaf_of_cell[cell] < 0) continue;
     const std::int64_t error = std::abs(std::int64_t{truth[cell]} - state.range[cell]);
     const std::int64_t at = std::min(error * 8 / step, last);
-    gain[static_cast<std::size_t>(leaf_of_cell[cell])] +=
-        error * 256 - effort.residual_costs[static_cast<std::size_t>(at)];
+    std::int64_t& of_leaf = gain[static_cast<std::size_t>(leaf_of_cell[cell])];
+    if (effort.max_error > 0 && error > effort.max_error) of_leaf = kMust;
+    of_leaf += error * 256 - effort.residual_costs[static_cast<std::size_t>(at)];
   }
   for (std::size_t i = 0; i < leaves.size(); ++i) leaves[i].has_residual = gain[i] > 0;
 }
@@ -113,13 +115,14 @@ void write_residual(const FieldState& state, const RowTable& table, const ScanPa
   choose_leaves(state, truth, effort, p.residual_step, scan.leaf, scan.leaves);
   const std::vector<std::byte> flags = encode_leaf_flags(state, scan.leaves, scan.leaf);
   const std::vector<std::uint8_t> coded = coded_cells(scan.leaves, scan.leaf);
-  const auto lambda = static_cast<std::uint32_t>(effort.residual_lambda * 256);
+  const ResidualBalance balance{static_cast<std::uint32_t>(effort.residual_lambda * 256),
+                                effort.max_error};
   std::vector<std::int32_t> decoded(truth.size(), 0);
   ByteWriter writer;
   writer.write_varint(flags.size());
   writer.write_bytes(flags);
   writer.write_bytes(encode_residual(residual_segment(state, coded, residual_base(state, p, scan)),
-                                     p.lattice_q32 != 0 ? ranges : truth, levels_of(p), lambda,
+                                     p.lattice_q32 != 0 ? ranges : truth, levels_of(p), balance,
                                      decoded));
   out.residual = std::move(writer).bytes();
   take_ranges(state, table, p, place, decoded, scan);

@@ -69,6 +69,8 @@ const char* name_of(ChunkType type) {
       return "order";
     case ChunkType::records:
       return "records";
+    case ChunkType::promise:
+      return "promise";
     case ChunkType::metadata:
       return "metadata";
   }

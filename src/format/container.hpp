@@ -45,6 +45,7 @@ enum class ChunkType : std::uint8_t {
   order = 0x23,        ///< the slots of the cloud: their order, shape and kind
   records = 0x24,      ///< attributes of every slot
   metadata = 0x80,
+  promise = 0x81,  ///< how exactly the points come back
 };
 
 inline bool is_ancillary(ChunkType type) {

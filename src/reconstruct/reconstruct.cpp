@@ -120,8 +120,9 @@ Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& se
                  fmt::format("a grid of {} x {} has more than the {} points allowed", grid.rows,
                              grid.columns, settings.max_points)};
   }
-  if (settings.rows == 1 && settings.columns == 1 && settings.masks && !scan.points.empty()) {
-    return coded_cloud(scan, settings.organised);
+  if (settings.rows == 1 && settings.columns == 1 && settings.masks) {
+    if (scan.cloud && !settings.organised) return *scan.cloud;
+    if (!scan.points.empty()) return coded_cloud(scan, settings.organised);
   }
   std::vector<double> columns(grid.columns);
   std::vector<Vec3> circle(grid.columns);

@@ -78,7 +78,7 @@ inline std::string residual_target(ByteSpan bytes) {
   }
   std::vector<std::int32_t> coded(cells), again(cells);
   const std::vector<std::byte> payload =
-      encode_residual(input.segment(), decoded, input.levels, input.lambda, coded);
+      encode_residual(input.segment(), decoded, input.levels, {input.lambda}, coded);
   const std::size_t rows = decode_residual(payload, input.segment(), input.levels, again, false);
   if (rows != input.rows || again != coded) return "coded again, the ranges differ";
   return "";

@@ -228,14 +228,15 @@ TEST(Codec, PatchSizesThatDoNotDivideKeepTheirLastRowsAndColumns) {
 }
 
 TEST(Codec, RejectsWhatItCannotCode) {
-  Cloud empty;
-  EXPECT_EQ(encode(empty).error().code, ErrorCode::invalid_argument);
+  EncodeSettings settings;
+  settings.compact.coverage = Coverage::image;
+  EXPECT_EQ(encode(Cloud{}, settings).error().code, ErrorCode::invalid_argument);
   Cloud zeros;
   zeros.positions.assign(10, Vec3{});
   zeros.width = 10;
-  EXPECT_NE(encode(zeros).error().message.find("no return"), std::string::npos);
+  EXPECT_NE(encode(zeros, settings).error().message.find("no return"), std::string::npos);
   const Cloud scan = small_scan();
-  EncodeSettings settings = small_settings();
+  settings = small_settings();
   settings.paper.patch = 0;
   EXPECT_NE(encode(scan, settings).error().message.find("patch size"), std::string::npos);
   settings = small_settings();

@@ -54,6 +54,7 @@ TEST(CompactField, RowsWithoutReturnsTakeTheNearestRow) {
   }
   EncodeSettings settings;
   settings.sensor = sensor;
+  settings.compact.coverage = Coverage::image;
   settings.compact.target_value = 0.01;
   const auto scan = decode(encode(cloud, settings)->bytes);
   ASSERT_EQ(scan->field->lattice().rows(), 24u);

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Proof that a file gives a scan back as it says.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "curlidar/cloud.hpp"
+#include "curlidar/codec.hpp"
+#include "curlidar/result.hpp"
+
+namespace curlidar {
+
+/// What a file and the cloud that it was made of have in common, slot by slot.
+struct Verification {
+  bool ok = false;         ///< everything below is as the file promises
+  std::size_t points = 0;  ///< returns of the cloud
+  double max_error_m = 0;  ///< of the returns, each against its own original
+  double mean_error_m = 0, rms_error_m = 0;
+  RecordPromise promise;
+  bool bit_exact = false;   ///< all coordinates are the same bits
+  bool order = false;       ///< as many slots, as many returns, empty slots in their places
+  bool shape = false;       ///< the same width and height
+  bool attributes = false;  ///< those that the file holds are the cloud's, bit for bit
+  std::vector<std::string> attributes_left_out;  ///< of the cloud, not in the file
+  std::vector<std::string> failures;             ///< one sentence each; empty if ok
+};
+
+/// Decodes a compact file with every return and compares it with its cloud. Errors: those of
+/// decode, and unsupported for files that do not hold every return in its slot. O(n).
+Result<Verification> verify(std::span<const std::byte> bytes, const Cloud& cloud,
+                            std::size_t threads = 1);
+
+}  // namespace curlidar

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "codec/record_encode.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "base/stopwatch.hpp"
+#include "base/try.hpp"
+#include "codec/chosen_attributes.hpp"
+#include "codec/compact_report.hpp"
+#include "codec/record_file.hpp"
+#include "codec/record_image.hpp"
+#include "codec/record_layout.hpp"
+#include "codec/record_loose.hpp"
+#include "compact/scan_header.hpp"
+#include "curlidar/verify.hpp"
+#include "image/range_image.hpp"
+#include "records/attributes.hpp"
+#include "records/corrections.hpp"
+
+namespace curlidar {
+namespace {
+
+/// A scan on its way into a file.
+struct RecordEncoding {
+  RecordLayout layout;
+  std::optional<RecordImage> image;
+  std::vector<std::byte> loose, corrections, order, attributes;
+  std::size_t corrected = 0;
+
+  /// Bytes of the geometry without frames.
+  std::size_t geometry_bytes() const {
+    std::size_t bytes = loose.size() + corrections.size() + order.size();
+    if (!image) return bytes;
+    for (const auto& chunk : image->trial.encoded.chunks) bytes += chunk.payload.size();
+    return bytes + image->trial.directions.size();
+  }
+};
+
+RecordPromise promise_of(const CompactSettings& settings) {
+  if (settings.target == CompactTarget::lossless) return {true, 0};
+  if (settings.target == CompactTarget::max_error) return {false, settings.target_value};
+  return {};
+}
+
+/// The slots behind the records: cells in raster order, then loose points.
+std::vector<std::uint32_t> slots_of_records(const RecordLayout& layout) {
+  std::vector<std::uint32_t> slots;
+  for (const std::uint32_t source : layout.scan.source) {
+    if (source != kNoPoint) slots.push_back(source);
+  }
+  slots.insert(slots.end(), layout.loose.begin(), layout.loose.end());
+  return slots;
+}
+
+std::vector<Vec3> positions_at(const Cloud& cloud, const std::vector<std::uint32_t>& slots) {
+  std::vector<Vec3> positions;
+  positions.reserve(slots.size());
+  for (const std::uint32_t slot : slots) positions.push_back(cloud.positions[slot]);
+  return positions;
+}
+
+/// The order of the cloud's slots in terms of the layout's records.
+CloudOrder record_order(const Cloud& cloud, const std::vector<std::uint32_t>& slots) {
+  CloudOrder order = order_of(cloud);
+  std::vector<std::uint32_t> record_of_slot(cloud.size(), 0);
+  for (std::uint32_t record = 0; record < slots.size(); ++record) {
+    record_of_slot[slots[record]] = record;
+  }
+  order.record.clear();
+  for (std::size_t slot = 0; slot < cloud.size(); ++slot) {
+    if (order.kind[slot] == SlotKind::point) order.record.push_back(record_of_slot[slot]);
+  }
+  return order;
+}
+
+/// The image as a decoder has it; without rows if the layout has none.
+struct ImageView {
+  compact::RowTable table;
+  compact::Image image;
+};
+
+ImageView view_of(const RecordEncoding& encoding) {
+  if (!encoding.image) return {};
+  return {encoding.image->model.table, encoding.image->trial.encoded.decoded};
+}
+
+/// Corrections that bring the points within the promise.
+Status add_corrections(const Cloud& cloud, const std::vector<std::uint32_t>& slots,
+                       const CompactSettings& settings, const std::vector<Vec3>& loose,
+                       RecordEncoding& encoding) {
+  const RecordPromise promise = promise_of(settings);
+  if (!encoding.image || promise == RecordPromise{}) return {};
+  std::vector<Vec3> predicted =
+      points_of(encoding.image->model, encoding.image->trial.encoded.decoded);
+  predicted.insert(predicted.end(), loose.begin(), loose.end());
+  round_to(cloud.position_type, predicted);
+  CURLIDAR_TRY_ASSIGN(coded, encode_corrections(predicted, positions_at(cloud, slots),
+                                                cloud.position_type, {promise.bound_m}));
+  if (coded.corrected > 0) encoding.corrections = std::move(coded.bytes);
+  encoding.corrected = coded.corrected;
+  return {};
+}
+
+/// Geometry and order of a cloud laid out.
+Result<RecordEncoding> encode_layout(const Cloud& cloud, RecordLayout layout,
+                                     const EncodeSettings& settings,
+                                     const ProgressCallback& progress) {
+  constexpr double kFrameBits = 8.0 * 6;
+  RecordEncoding out;
+  out.layout = std::move(layout);
+  const bool has_image = out.layout.scan.counts.kept > 0;
+  std::vector<std::uint32_t> slots = slots_of_records(out.layout);
+
+  if (!has_image && !settings.compact.keep_order) {
+    const std::vector<std::uint32_t> nearby = morton_order(positions_at(cloud, slots));
+    for (std::size_t i = 0; i < nearby.size(); ++i) out.layout.loose[i] = slots[nearby[i]];
+    slots = out.layout.loose;
+  }
+  std::vector<std::uint8_t> occupied;
+  for (const std::uint32_t source : out.layout.scan.source) {
+    occupied.push_back(source != kNoPoint ? 1 : 0);
+  }
+  const CellGrid grid{out.layout.scan.rows, out.layout.scan.columns, occupied,
+                      out.layout.loose.size()};
+  out.order = encode_order(record_order(cloud, slots), grid);
+
+  std::vector<Vec3> loose = positions_at(cloud, out.layout.loose);
+  const double beside_bits = 8.0 * static_cast<double>(out.order.size()) + kFrameBits;
+  if (!loose.empty()) {
+    const double error_m = first_error_guess(settings.compact);
+    Result<CodedPoints> coded =
+        has_image ? encode_leftovers(loose, cloud.position_type, settings.compact, error_m)
+                  : encode_all_loose(loose, cloud.position_type, settings.compact, beside_bits,
+                                     settings.threads);
+    if (!coded) return coded.error();
+    out.loose = std::move(coded->bytes);
+    loose = std::move(coded->decoded);
+  }
+  if (has_image) {
+    CURLIDAR_TRY_ASSIGN(
+        image,
+        encode_record_image(cloud, out.layout, settings,
+                            beside_bits + 8.0 * static_cast<double>(out.loose.size()), progress));
+    out.image = std::move(image);
+  }
+  CURLIDAR_TRY(add_corrections(cloud, slots, settings.compact, loose, out));
+  return out;
+}
+
+/// The cloud as the file is to give it back: without the attributes that are not kept, and, where
+/// the order is given up, without empty slots.
+Result<Cloud> kept_cloud(const Cloud& cloud, const EncodeSettings& settings) {
+  Cloud kept;
+  kept.positions = cloud.positions;
+  kept.position_type = cloud.position_type;
+  kept.width = cloud.width;
+  kept.height = cloud.height;
+  CURLIDAR_TRY_ASSIGN(attributes, choose_attributes(cloud, settings.attributes));
+  kept.attributes = std::move(attributes);
+  if (settings.compact.keep_order) return kept;
+  std::vector<std::uint32_t> returns;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    if (is_return(cloud.positions[i])) returns.push_back(i);
+  }
+  Cloud selected = select(kept, returns);
+  selected.position_type = cloud.position_type;
+  return selected;
+}
+
+/// Puts the slots of a cloud whose order does not matter into that of its records.
+Cloud in_record_order(const Cloud& cloud, const std::vector<std::uint32_t>& slots) {
+  Cloud out = select(cloud, slots);
+  out.position_type = cloud.position_type;
+  return out;
+}
+
+void renumber(RecordLayout& layout) {
+  std::uint32_t record = 0;
+  for (std::uint32_t& source : layout.scan.source) {
+    if (source != kNoPoint) source = record++;
+  }
+  for (std::uint32_t& slot : layout.loose) slot = record++;
+}
+
+/// Tries what may be smaller than the layout's image for clouds without a lattice of rays.
+Result<RecordEncoding> encode_best(const Cloud& cloud, const EncodeSettings& settings,
+                                   const ProgressCallback& progress) {
+  CURLIDAR_TRY_ASSIGN(layout, lay_out(cloud, settings));
+  const bool certain = layout.lattice || layout.scan.cell_centres || layout.scan.rows == 0;
+  CURLIDAR_TRY_ASSIGN(best, encode_layout(cloud, std::move(layout), settings, progress));
+  const bool comparable = settings.compact.target == CompactTarget::lossless ||
+                          settings.compact.target == CompactTarget::max_error;
+  if (certain || !comparable) return best;
+  CURLIDAR_TRY_ASSIGN(loose, encode_layout(cloud, lay_out_loose(cloud), settings, {}));
+  if (loose.geometry_bytes() >= best.geometry_bytes()) return best;
+  loose.layout.notes.push_back("The points take less one after the other than on their rings.");
+  return loose;
+}
+
+std::size_t framed(const std::vector<std::byte>& payload) {
+  return payload.empty() ? 0 : compact::frame_size(payload.size()) + payload.size();
+}
+
+RecordReport record_report(const RecordEncoding& encoding, const CompactSettings& settings) {
+  RecordReport report;
+  report.loose = encoding.layout.loose.size();
+  report.corrected = encoding.corrected;
+  report.promise = promise_of(settings);
+  report.notes = encoding.layout.notes;
+  report.bytes = {0,
+                  0,
+                  framed(encoding.loose),
+                  framed(encoding.corrections),
+                  framed(encoding.order),
+                  framed(encoding.attributes)};
+  if (!encoding.image) return report;
+  report.lattice = encoding.layout.lattice ? RecordLattice::rays : RecordLattice::rings;
+  report.bytes.directions = framed(encoding.image->trial.directions);
+  for (const auto& chunk : encoding.image->trial.encoded.chunks) {
+    if (chunk.part == compact::ScanPart::rays) report.bytes.rays = framed(chunk.payload);
+  }
+  if (const auto& fit = encoding.layout.lattice) {
+    report.table = fit->beams.table;
+    report.motion = !fit->motion.none();
+    report.share_on_lattice = fit->share;
+    report.across_m = fit->residuals.across_median_m;
+    report.up_m = fit->residuals.up_median_m;
+    report.range_m = fit->residuals.range_median_m;
+    report.firings = static_cast<std::uint32_t>(fit->firings.size());
+    report.slots = fit->beams.slots;
+    report.range_unit_m = fit->beams.range_unit_m;
+  }
+  return report;
+}
+
+std::vector<std::byte> write_file(const RecordEncoding& encoding, const CompactSettings& settings,
+                                  const std::vector<std::byte>& metadata) {
+  ContainerWriter writer;
+  const auto add = [&](ChunkType type, const std::vector<std::byte>& payload) {
+    if (!payload.empty()) writer.add(type, payload);
+  };
+  if (encoding.image) {
+    for (const auto& chunk : encoding.image->trial.encoded.chunks) {
+      writer.add(static_cast<ChunkType>(chunk.part), chunk.payload);
+    }
+    add(ChunkType::directions, encoding.image->trial.directions);
+  }
+  add(ChunkType::loose, encoding.loose);
+  writer.add(ChunkType::order, encoding.order);
+  add(ChunkType::corrections, encoding.corrections);
+  add(ChunkType::records, encoding.attributes);
+  const RecordPromise promise = promise_of(settings);
+  if (promise != RecordPromise{}) writer.add(ChunkType::promise, write_promise(promise));
+  add(ChunkType::metadata, metadata);
+  return std::move(writer).finish();
+}
+
+}  // namespace
+
+const char* to_string(RecordLattice lattice) {
+  switch (lattice) {
+    case RecordLattice::none:
+      return "none";
+    case RecordLattice::rings:
+      return "rings";
+    case RecordLattice::rays:
+      return "rays";
+  }
+  return "none";
+}
+
+Result<Encoded> encode_records(const Cloud& source, const EncodeSettings& settings,
+                               const ProgressCallback& progress) {
+  Stopwatch watch;
+  Encoded out;
+  EncodeReport& report = out.report;
+  CURLIDAR_TRY_ASSIGN(cloud, kept_cloud(source, settings));
+  CURLIDAR_TRY_ASSIGN(encoding, encode_best(cloud, settings, progress));
+  report.stages_ms.push_back({"geometry", watch.lap_ms()});
+
+  if (!settings.compact.keep_order) {
+    const std::vector<std::uint32_t> slots = slots_of_records(encoding.layout);
+    cloud = in_record_order(cloud, slots);
+    renumber(encoding.layout);
+    const ImageView view = view_of(encoding);
+    const RecordCells cells(view.table, view.image);
+    encoding.order = encode_order(record_order(cloud, slots_of_records(encoding.layout)),
+                                  cells.grid(encoding.layout.loose.size()));
+  }
+  if (!cloud.attributes.empty()) {
+    const ImageView view = view_of(encoding);
+    const RecordCells cells(view.table, view.image);
+    CURLIDAR_TRY_ASSIGN(
+        payload,
+        write_records(cloud.attributes, record_order(cloud, slots_of_records(encoding.layout)),
+                      cells.geometry(encoding.layout.loose.size())));
+    encoding.attributes = std::move(payload);
+  }
+  report.stages_ms.push_back({"attributes", watch.lap_ms()});
+
+  CURLIDAR_TRY_ASSIGN(metadata, metadata_payload(source.metadata));
+  out.bytes = write_file(encoding, settings.compact, metadata);
+  CURLIDAR_TRY_ASSIGN(proof, verify(out.bytes, cloud, settings.threads));
+  if (!proof.ok) {
+    return Error{ErrorCode::corrupt,
+                 fmt::format("the file does not give back what it promises ({}), which is a "
+                             "defect of this program: please report it with the scan",
+                             proof.failures.empty() ? "unknown" : proof.failures.front())};
+  }
+  report.stages_ms.push_back({"verify", watch.lap_ms()});
+
+  report.records = record_report(encoding, settings.compact);
+  const OwnErrors errors{proof.mean_error_m, proof.rms_error_m, proof.max_error_m};
+  report.compact = encoding.image ? report_of(encoding.image->trial, encoding.layout.scan,
+                                              encoding.image->model, errors)
+                                  : CompactReport{};
+  report.compact->mean_error_m = errors.mean;
+  report.compact->rms_error_m = errors.rms;
+  report.compact->max_error_m = errors.max;
+  if (encoding.image && settings.compact.target == CompactTarget::error_nn) {
+    report.compact->error_nn_m = encoding.image->trial.error_nn_m;
+  }
+  report.sensor = encoding.layout.scan.sensor.empty() ? "none" : encoding.layout.scan.sensor;
+  report.points_in = report.points_coded = count_returns(cloud);
+  report.projection.returns = report.projection.kept = report.points_in;
+  report.bytes = out.bytes.size();
+  const auto returns = static_cast<double>(std::max<std::size_t>(report.points_in, 1));
+  report.bits_per_point = 8.0 * static_cast<double>(report.bytes) / returns;
+  const std::size_t beside = framed(encoding.attributes) + framed(metadata);
+  CompactBreakdown& parts = report.compact->breakdown;
+  parts.records = 8.0 * static_cast<double>(report.bytes - beside) - parts.total();
+  report.compact->bits_per_point_coded = 8.0 * static_cast<double>(report.bytes - beside) / returns;
+  if (progress) progress("write", 1);
+  return out;
+}
+
+}  // namespace curlidar

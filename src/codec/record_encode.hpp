@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Profile::compact with every return: an image on the sensor's own lattice, and what brings each
+// point back to its place in the cloud.
+#pragma once
+
+#include "curlidar/codec.hpp"
+
+namespace curlidar {
+
+Result<Encoded> encode_records(const Cloud& cloud, const EncodeSettings& settings,
+                               const ProgressCallback& progress);
+
+}  // namespace curlidar

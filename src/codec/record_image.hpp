@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The image of a file with every return: how exactly its ranges and directions are coded.
+#pragma once
+
+#include "codec/compact_search.hpp"
+#include "codec/record_layout.hpp"
+
+namespace curlidar {
+
+/// An image as it will be written.
+struct RecordImage {
+  CompactModel model;
+  CompactTrial trial;
+};
+
+/// Encodes the image of a layout that has one. `beside_bits`: what the file takes besides. Errors
+/// as search_target.
+Result<RecordImage> encode_record_image(const Cloud& cloud, const RecordLayout& layout,
+                                        const EncodeSettings& settings, double beside_bits,
+                                        const ProgressCallback& progress);
+
+}  // namespace curlidar
