@@ -26,7 +26,7 @@ HEADERS = {
     "io": "io", "sensor": "sensor", "calibrate": "sensor", "lattice": "image", "project": "image",
     "settings": "image",
     "field": "field", "paper": "codec", "codec": "codec", "compare": "metrics", "simulate": "simulate",
-    "render": "render",
+    "render": "render", "calibrate": "sensor", "verify": "codec",
 }
 
 SOURCE_FOLDERS = ["include", "src", "apps", "tests", "bench", "fuzz", "tools"]
