@@ -170,9 +170,9 @@ class TargetSearch {
   explicit TargetSearch(const CompactJob& job)
       : job_(job),
         bits_(job.settings.target == CompactTarget::bits_per_point),
-        good_(std::log(job.settings.effort >= kPatientEffort ? 0.985
-                       : bits_                               ? 0.97
-                                                             : 0.95)) {}
+        good_(std::log(job.settings.effort >= kPatientEffort                     ? 0.985
+                       : bits_ || job.settings.effort >= compact::kDefaultEffort ? 0.97
+                                                                                 : 0.95)) {}
 
   /// Searches over the scale of the steps for a mean error of `error_m`, which decides what kind of
   /// coding is used.

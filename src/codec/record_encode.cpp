@@ -192,9 +192,7 @@ Result<RecordEncoding> encode_best(const Cloud& cloud, const EncodeSettings& set
   CURLIDAR_TRY_ASSIGN(layout, lay_out(cloud, settings));
   const bool certain = layout.lattice || layout.scan.cell_centres || layout.scan.rows == 0;
   CURLIDAR_TRY_ASSIGN(best, encode_layout(cloud, std::move(layout), settings, progress));
-  const bool comparable = settings.compact.target == CompactTarget::lossless ||
-                          settings.compact.target == CompactTarget::max_error;
-  if (certain || !comparable) return best;
+  if (certain) return best;
   CURLIDAR_TRY_ASSIGN(loose, encode_layout(cloud, lay_out_loose(cloud), settings, {}));
   if (loose.geometry_bytes() >= best.geometry_bytes()) return best;
   loose.layout.notes.push_back("The points take less one after the other than on their rings.");

@@ -34,31 +34,125 @@ std::vector<std::uint32_t> returns_without_cell(const Cloud& cloud, const Gridde
   return loose;
 }
 
-/// Bits of the masks of even columns and of the returns that share a cell, roughly: a mask costs
-/// half of what independent cells would.
-double cost_of_columns(const GriddedScan& scan, std::size_t returns) {
-  constexpr double kBitsOfLoose = 30;
-  const auto cells = static_cast<double>(scan.source.size());
-  const double p = std::clamp(static_cast<double>(scan.counts.kept) / cells, 1e-9, 1 - 1e-9);
-  const double entropy = -p * std::log2(p) - (1 - p) * std::log2(1 - p);
-  return cells * entropy / 2 + kBitsOfLoose * static_cast<double>(returns - scan.counts.kept);
+/// A return on its way to a column of its ring.
+struct Sighted {
+  double column = 0;  ///< where it looks, in columns
+  std::uint32_t slot = 0;
+};
+
+/// The returns of every ring by azimuth, in parts of a turn.
+std::vector<std::vector<Sighted>> sort_by_azimuth(const Cloud& cloud, const Detection& detection) {
+  std::vector<std::vector<Sighted>> rings(detection.ring_elevations.size());
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    const std::uint16_t ring = detection.ring_of_point[i];
+    const Vec3& p = cloud.positions[i];
+    if (ring == kNoRing || norm(p) > kMaxCompactRangeM) continue;
+    rings[ring].push_back({azimuth_of(p) / (2 * std::numbers::pi) + 0.5, i});
+  }
+  for (std::vector<Sighted>& ring : rings) {
+    std::sort(ring.begin(), ring.end(), [](const Sighted& a, const Sighted& b) {
+      return a.column != b.column ? a.column < b.column : a.slot < b.slot;
+    });
+  }
+  return rings;
 }
 
-GriddedScan best_columns(const Cloud& cloud, const Detection& detection) {
-  constexpr std::array<std::uint32_t, 9> kColumns{360,  512,  1024, 1440, 1800,
-                                                  2048, 3072, 4096, 8192};
-  std::vector<std::uint32_t> tried(kColumns.begin(), kColumns.end());
-  if (cloud.organised() && cloud.width >= 4 && cloud.width <= 65536) tried.push_back(cloud.width);
-  GriddedScan best;
-  double least = 0;
-  for (const std::uint32_t columns : tried) {
-    GriddedScan scan = ring_scan(cloud, detection, columns, 0, kMaxCompactRangeM);
-    const double cost = cost_of_columns(scan, detection.returns);
-    if (best.rows != 0 && cost >= least) continue;
-    least = cost;
-    best = std::move(scan);
+/// Columns of their own for the returns of a ring, ascending, as near to where they look as that
+/// allows: isotonic regression of what is left of a return's column without its number, by pooling
+/// neighbours that are out of order. There must be no more returns than columns.
+std::vector<std::uint32_t> own_columns(const std::vector<Sighted>& ring, std::uint32_t columns) {
+  struct Pool {
+    double sum = 0;
+    std::size_t count = 0;
+    double mean() const { return sum / static_cast<double>(count); }
+  };
+  std::vector<Pool> pools;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    pools.push_back({ring[i].column * columns - static_cast<double>(i), 1});
+    while (pools.size() > 1 && pools[pools.size() - 2].mean() > pools.back().mean()) {
+      const Pool last = pools.back();
+      pools.pop_back();
+      pools.back().sum += last.sum;
+      pools.back().count += last.count;
+    }
   }
-  return best;
+  std::vector<std::uint32_t> out;
+  const double most = static_cast<double>(columns - ring.size());
+  for (const Pool& pool : pools) {
+    const auto shift = static_cast<std::size_t>(std::clamp(std::round(pool.mean()), 0.0, most));
+    for (std::size_t k = 0; k < pool.count; ++k) {
+      out.push_back(static_cast<std::uint32_t>(shift + out.size()));
+    }
+  }
+  return out;
+}
+
+/// Bits of the mask and of the offsets that come from sharing out columns, roughly: a mask costs
+/// half of what independent cells would, an offset what doubling it adds.
+double cost_of_columns(const std::vector<std::vector<Sighted>>& rings, std::uint32_t columns) {
+  double returns = 0, offsets = 0;
+  for (const std::vector<Sighted>& ring : rings) {
+    const std::vector<std::uint32_t> own = own_columns(ring, columns);
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      offsets += std::log2(1 + std::abs(ring[i].column * columns - own[i]));
+    }
+    returns += static_cast<double>(ring.size());
+  }
+  const double cells = static_cast<double>(rings.size()) * columns;
+  const double p = std::clamp(returns / cells, 1e-9, 1 - 1e-9);
+  const double entropy = -p * std::log2(p) - (1 - p) * std::log2(1 - p);
+  return cells * entropy / 2 + offsets;
+}
+
+/// Numbers of columns worth trying for rings of at most `most` returns.
+std::vector<std::uint32_t> column_counts(const Cloud& cloud, std::size_t most) {
+  std::vector<std::uint32_t> counts;
+  const auto add = [&](double columns) {
+    if (columns >= std::max<double>(4, static_cast<double>(most)) && columns <= 65536) {
+      counts.push_back(static_cast<std::uint32_t>(columns));
+    }
+  };
+  for (const double share : {1.0, 1.01, 1.03, 1.1, 1.25, 1.5, 2.0}) {
+    add(std::ceil(share * static_cast<double>(most)));
+  }
+  for (const double usual : {360, 512, 900, 1024, 1800, 2000, 2048, 3600, 4096}) add(usual);
+  if (cloud.organised()) add(cloud.width);
+  return counts;
+}
+
+/// Rings on even columns, every return of a ring in a column of its own.
+GriddedScan ring_columns(const Cloud& cloud, const Detection& detection) {
+  const std::vector<std::vector<Sighted>> rings = sort_by_azimuth(cloud, detection);
+  std::size_t most = 4;
+  for (const std::vector<Sighted>& ring : rings) most = std::max(most, ring.size());
+  std::uint32_t columns = 0;
+  double least = 0;
+  for (const std::uint32_t tried : column_counts(cloud, most)) {
+    const double cost = cost_of_columns(rings, tried);
+    if (columns != 0 && cost >= least) continue;
+    columns = tried;
+    least = cost;
+  }
+  GriddedScan scan;
+  if (columns == 0) return scan;
+  scan.rows = static_cast<std::uint32_t>(rings.size());
+  scan.columns = columns;
+  scan.range.assign(std::size_t{scan.rows} * columns, 0);
+  scan.source.assign(scan.range.size(), kNoPoint);
+  scan.elevations = detection.ring_elevations;
+  scan.max_range_m = kMaxCompactRangeM;
+  scan.sensor = detection.sensor.name;
+  scan.counts.returns = detection.returns;
+  for (std::uint32_t row = 0; row < scan.rows; ++row) {
+    const std::vector<std::uint32_t> own = own_columns(rings[row], columns);
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const std::size_t cell = scan.cell(row, own[i]);
+      scan.source[cell] = rings[row][i].slot;
+      scan.range[cell] = norm(cloud.positions[rings[row][i].slot]);
+    }
+    scan.counts.kept += own.size();
+  }
+  return scan;
 }
 
 /// The cells of a lattice as a scan: row = beam, column = firing in space.
@@ -150,7 +244,7 @@ Result<RecordLayout> lay_out(const Cloud& cloud, const EncodeSettings& settings)
     layout.scan.sensor = rings->sensor.name;
     layout.lattice = std::move(lattice);
   } else {
-    layout.scan = best_columns(cloud, *rings);
+    layout.scan = ring_columns(cloud, *rings);
     layout.notes.push_back(
         "The scan fits no known lattice of rays: directions are coded beside ranges; "
         "'curlidar calibrate' may find the sensor's own.");
