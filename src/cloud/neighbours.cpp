@@ -7,8 +7,10 @@
 #include <limits>
 #include <nanoflann.hpp>
 #include <string>
+#include <utility>
 
 #include "base/parallel.hpp"
+#include "base/try.hpp"
 
 namespace curlidar {
 namespace {
@@ -86,6 +88,17 @@ Result<std::vector<double>> distances_to_nearest(const Cloud& from, const Cloud&
     }
   });
   return distances;
+}
+
+Result<double> worse_mean_distance(const Cloud& a, const Cloud& b, std::size_t threads) {
+  double worse = 0;
+  for (const auto& [from, to] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+    CURLIDAR_TRY_ASSIGN(distances, distances_to_nearest(*from, *to, threads));
+    double sum = 0;
+    for (const double d : distances) sum += d;
+    worse = std::max(worse, sum / static_cast<double>(std::max<std::size_t>(distances.size(), 1)));
+  }
+  return worse;
 }
 
 }  // namespace curlidar

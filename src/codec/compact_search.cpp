@@ -64,14 +64,7 @@ Result<double> worse_direction(const CompactJob& job, const std::vector<Vec3>& p
   }
   back.positions = points;
   for (const std::uint32_t i : job.loose) back.positions.push_back(job.cloud.positions[i]);
-  double worse = 0;
-  for (const auto& [from, to] : {std::pair{&original, &back}, std::pair{&back, &original}}) {
-    CURLIDAR_TRY_ASSIGN(distances, distances_to_nearest(*from, *to, job.threads));
-    double sum = 0;
-    for (const double d : distances) sum += d;
-    worse = std::max(worse, sum / static_cast<double>(std::max<std::size_t>(distances.size(), 1)));
-  }
-  return worse;
+  return worse_mean_distance(original, back, job.threads);
 }
 
 /// The natural logarithm of what a trial reached over what is wanted.

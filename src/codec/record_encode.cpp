@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "base/stopwatch.hpp"
 #include "base/try.hpp"
 #include "codec/chosen_attributes.hpp"
+#include "codec/compact_decode.hpp"
 #include "codec/compact_report.hpp"
 #include "codec/record_file.hpp"
 #include "codec/record_image.hpp"
@@ -26,6 +29,7 @@ namespace {
 
 /// A scan on its way into a file.
 struct RecordEncoding {
+  Cloud cloud;  ///< as the file is to give it back
   RecordLayout layout;
   std::optional<RecordImage> image;
   std::vector<std::byte> loose, corrections, order, attributes;
@@ -105,21 +109,35 @@ Status add_corrections(const Cloud& cloud, const std::vector<std::uint32_t>& slo
   return {};
 }
 
+/// Gives up the order of a cloud: its slots become those of the layout's records.
+void reorder(Cloud& cloud, RecordLayout& layout) {
+  if (layout.scan.counts.kept == 0) {
+    const std::vector<std::uint32_t> slots = layout.loose;
+    const std::vector<std::uint32_t> nearby = morton_order(positions_at(cloud, slots));
+    for (std::size_t i = 0; i < nearby.size(); ++i) layout.loose[i] = slots[nearby[i]];
+  }
+  const ScalarType type = cloud.position_type;
+  cloud = select(cloud, slots_of_records(layout));
+  cloud.position_type = type;
+  std::uint32_t record = 0;
+  for (std::uint32_t& source : layout.scan.source) {
+    if (source != kNoPoint) source = record++;
+  }
+  for (std::uint32_t& slot : layout.loose) slot = record++;
+}
+
 /// Geometry and order of a cloud laid out.
-Result<RecordEncoding> encode_layout(const Cloud& cloud, RecordLayout layout,
+Result<RecordEncoding> encode_layout(Cloud given, RecordLayout layout,
                                      const EncodeSettings& settings,
                                      const ProgressCallback& progress) {
   constexpr double kFrameBits = 8.0 * 6;
   RecordEncoding out;
+  out.cloud = std::move(given);
   out.layout = std::move(layout);
+  const Cloud& cloud = out.cloud;
   const bool has_image = out.layout.scan.counts.kept > 0;
-  std::vector<std::uint32_t> slots = slots_of_records(out.layout);
-
-  if (!has_image && !settings.compact.keep_order) {
-    const std::vector<std::uint32_t> nearby = morton_order(positions_at(cloud, slots));
-    for (std::size_t i = 0; i < nearby.size(); ++i) out.layout.loose[i] = slots[nearby[i]];
-    slots = out.layout.loose;
-  }
+  if (!settings.compact.keep_order) reorder(out.cloud, out.layout);
+  const std::vector<std::uint32_t> slots = slots_of_records(out.layout);
   std::vector<std::uint8_t> occupied;
   for (const std::uint32_t source : out.layout.scan.source) {
     occupied.push_back(source != kNoPoint ? 1 : 0);
@@ -151,8 +169,7 @@ Result<RecordEncoding> encode_layout(const Cloud& cloud, RecordLayout layout,
   return out;
 }
 
-/// The cloud as the file is to give it back: without the attributes that are not kept, and, where
-/// the order is given up, without empty slots.
+/// The cloud without the attributes that are not kept.
 Result<Cloud> kept_cloud(const Cloud& cloud, const EncodeSettings& settings) {
   Cloud kept;
   kept.positions = cloud.positions;
@@ -161,29 +178,7 @@ Result<Cloud> kept_cloud(const Cloud& cloud, const EncodeSettings& settings) {
   kept.height = cloud.height;
   CURLIDAR_TRY_ASSIGN(attributes, choose_attributes(cloud, settings.attributes));
   kept.attributes = std::move(attributes);
-  if (settings.compact.keep_order) return kept;
-  std::vector<std::uint32_t> returns;
-  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-    if (is_return(cloud.positions[i])) returns.push_back(i);
-  }
-  Cloud selected = select(kept, returns);
-  selected.position_type = cloud.position_type;
-  return selected;
-}
-
-/// Puts the slots of a cloud whose order does not matter into that of its records.
-Cloud in_record_order(const Cloud& cloud, const std::vector<std::uint32_t>& slots) {
-  Cloud out = select(cloud, slots);
-  out.position_type = cloud.position_type;
-  return out;
-}
-
-void renumber(RecordLayout& layout) {
-  std::uint32_t record = 0;
-  for (std::uint32_t& source : layout.scan.source) {
-    if (source != kNoPoint) source = record++;
-  }
-  for (std::uint32_t& slot : layout.loose) slot = record++;
+  return kept;
 }
 
 /// Tries what may be smaller than the layout's image for clouds without a lattice of rays.
@@ -276,19 +271,11 @@ Result<Encoded> encode_records(const Cloud& source, const EncodeSettings& settin
   Stopwatch watch;
   Encoded out;
   EncodeReport& report = out.report;
-  CURLIDAR_TRY_ASSIGN(cloud, kept_cloud(source, settings));
-  CURLIDAR_TRY_ASSIGN(encoding, encode_best(cloud, settings, progress));
+  CURLIDAR_TRY_ASSIGN(kept, kept_cloud(source, settings));
+  CURLIDAR_TRY_ASSIGN(encoding, encode_best(kept, settings, progress));
+  const Cloud& cloud = encoding.cloud;
   report.stages_ms.push_back({"geometry", watch.lap_ms()});
 
-  if (!settings.compact.keep_order) {
-    const std::vector<std::uint32_t> slots = slots_of_records(encoding.layout);
-    cloud = in_record_order(cloud, slots);
-    renumber(encoding.layout);
-    const ImageView view = view_of(encoding);
-    const RecordCells cells(view.table, view.image);
-    encoding.order = encode_order(record_order(cloud, slots_of_records(encoding.layout)),
-                                  cells.grid(encoding.layout.loose.size()));
-  }
   if (!cloud.attributes.empty()) {
     const ImageView view = view_of(encoding);
     const RecordCells cells(view.table, view.image);
@@ -300,7 +287,11 @@ Result<Encoded> encode_records(const Cloud& source, const EncodeSettings& settin
   }
   report.stages_ms.push_back({"attributes", watch.lap_ms()});
 
-  CURLIDAR_TRY_ASSIGN(metadata, metadata_payload(source.metadata));
+  std::map<std::string, std::string> named = source.metadata;
+  if (!named.empty() && !encoding.layout.scan.sensor.empty()) {
+    named.emplace(kSensorKey, encoding.layout.scan.sensor);
+  }
+  CURLIDAR_TRY_ASSIGN(metadata, metadata_payload(named));
   out.bytes = write_file(encoding, settings.compact, metadata);
   CURLIDAR_TRY_ASSIGN(proof, verify(out.bytes, cloud, settings.threads));
   if (!proof.ok) {

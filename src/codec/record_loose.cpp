@@ -29,14 +29,7 @@ Result<double> neighbour_error(const std::vector<Vec3>& points, const std::vecto
   Cloud a, b;
   a.positions = points;
   b.positions = decoded;
-  double worse = 0;
-  for (const auto& [from, to] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
-    CURLIDAR_TRY_ASSIGN(distances, distances_to_nearest(*from, *to, threads));
-    double sum = 0;
-    for (const double d : distances) sum += d;
-    worse = std::max(worse, sum / static_cast<double>(std::max<std::size_t>(distances.size(), 1)));
-  }
-  return worse;
+  return worse_mean_distance(a, b, threads);
 }
 
 /// How far a coding misses the target: at most 1 is within.
