@@ -14,6 +14,7 @@ GOALS = {
                ("on unit", 0.): 6.6, ("intensity", .02): 3.9},
     SCANS[3]: {("nearest", .001): 3.8, ("nearest", .005): 1.35, ("nearest", .01): .87,
                ("nearest", .02): .68, ("nearest", .05): .52},
+    SCANS[9]: {("intensity", .02): 3.9},  # that of KITTI, as above
 }
 DEFAULT_EFFORT = 1.1  # of the goal that the default effort may take
 OWN_TO_NEAREST = 1.6  # what the mean own error may be of the nearest-neighbour mean
