@@ -58,12 +58,12 @@ Result<double> worse_direction(const CompactJob& job, const std::vector<Vec3>& p
   Cloud original, back;
   for (const Vec3& p : job.cloud.positions) {
     const double range = norm(p);
-    if (is_return(p) && range >= job.scan.min_range_m && range <= job.scan.max_range_m) {
-      original.positions.push_back(p);
-    }
+    const bool counts =
+        job.loose || (range >= job.scan.min_range_m && range <= job.scan.max_range_m);
+    if (is_return(p) && counts) original.positions.push_back(p);
   }
   back.positions = points;
-  for (const std::uint32_t i : job.loose) back.positions.push_back(job.cloud.positions[i]);
+  if (job.loose) back.positions.insert(back.positions.end(), job.loose->begin(), job.loose->end());
   return worse_mean_distance(original, back, job.threads);
 }
 
@@ -265,7 +265,7 @@ Result<CompactTrial> try_steps(const CompactJob& job, const compact::Steps& step
   }
   trial.bits_per_point =
       (8.0 * static_cast<double>(std::move(writer).finish().size()) + job.beside_bits) /
-      static_cast<double>(job.scan.counts.kept + job.loose.size());
+      static_cast<double>(job.scan.counts.kept + (job.loose ? job.loose->size() : 0));
   if (job.settings.target == CompactTarget::error_nn) {
     CURLIDAR_TRY_ASSIGN(distance, worse_direction(job, points));
     trial.error_nn_m = distance;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "codec/compact_grid.hpp"
 #include "codec/compact_model.hpp"
@@ -24,8 +25,9 @@ struct CompactJob {
   ProgressCallback progress{};
   double start = 0;  ///< logarithm of the scale of the usual steps at which the search begins
   compact::FieldKind kind = compact::FieldKind::by_error;
-  /// Points of the cloud that are coded apart, nearly exactly.
-  std::vector<std::uint32_t> loose{};
+  /// Files with every return: the points without a cell, as decoded. Without it, what lies out of
+  /// the scan's range does not count.
+  std::optional<std::vector<Vec3>> loose{};
   double beside_bits = 0;      ///< what a file takes besides its image and offsets of directions
   std::int32_t max_error = 0;  ///< of a range, Q16 metres; 0 = none
 };

@@ -27,6 +27,11 @@
 namespace curlidar {
 namespace {
 
+/// Bytes of a chunk, if it is written.
+std::size_t framed(const std::vector<std::byte>& payload) {
+  return payload.empty() ? 0 : compact::frame_size(payload.size()) + payload.size();
+}
+
 /// A scan on its way into a file.
 struct RecordEncoding {
   Cloud cloud;  ///< as the file is to give it back
@@ -130,7 +135,7 @@ void reorder(Cloud& cloud, RecordLayout& layout) {
 Result<RecordEncoding> encode_layout(Cloud given, RecordLayout layout,
                                      const EncodeSettings& settings,
                                      const ProgressCallback& progress) {
-  constexpr double kFrameBits = 8.0 * 6;
+  const std::size_t container_bytes = kHeaderSize + compact::frame_size(0);
   RecordEncoding out;
   out.cloud = std::move(given);
   out.layout = std::move(layout);
@@ -147,12 +152,13 @@ Result<RecordEncoding> encode_layout(Cloud given, RecordLayout layout,
   out.order = encode_order(record_order(cloud, slots), grid);
 
   std::vector<Vec3> loose = positions_at(cloud, out.layout.loose);
-  const double beside_bits = 8.0 * static_cast<double>(out.order.size()) + kFrameBits;
+  const double beside_bits = 8.0 * static_cast<double>(framed(out.order));
   if (!loose.empty()) {
     const double error_m = first_error_guess(settings.compact);
     Result<CodedPoints> coded =
         has_image ? encode_leftovers(loose, cloud.position_type, settings.compact, error_m)
-                  : encode_all_loose(loose, cloud.position_type, settings.compact, beside_bits,
+                  : encode_all_loose(loose, cloud.position_type, settings.compact,
+                                     beside_bits + 8.0 * static_cast<double>(container_bytes),
                                      settings.threads);
     if (!coded) return coded.error();
     out.loose = std::move(coded->bytes);
@@ -161,8 +167,8 @@ Result<RecordEncoding> encode_layout(Cloud given, RecordLayout layout,
   if (has_image) {
     CURLIDAR_TRY_ASSIGN(
         image,
-        encode_record_image(cloud, out.layout, settings,
-                            beside_bits + 8.0 * static_cast<double>(out.loose.size()), progress));
+        encode_record_image(cloud, out.layout, loose, settings,
+                            beside_bits + 8.0 * static_cast<double>(framed(out.loose)), progress));
     out.image = std::move(image);
   }
   CURLIDAR_TRY(add_corrections(cloud, slots, settings.compact, loose, out));
@@ -181,21 +187,31 @@ Result<Cloud> kept_cloud(const Cloud& cloud, const EncodeSettings& settings) {
   return kept;
 }
 
-/// Tries what may be smaller than the layout's image for clouds without a lattice of rays.
+/// Tries what may be smaller than the layout's image for clouds without a lattice of rays, and what
+/// may reach a target that the image does not.
 Result<RecordEncoding> encode_best(const Cloud& cloud, const EncodeSettings& settings,
                                    const ProgressCallback& progress) {
   CURLIDAR_TRY_ASSIGN(layout, lay_out(cloud, settings));
   const bool certain = layout.lattice || layout.scan.cell_centres || layout.scan.rows == 0;
-  CURLIDAR_TRY_ASSIGN(best, encode_layout(cloud, std::move(layout), settings, progress));
-  if (certain) return best;
-  CURLIDAR_TRY_ASSIGN(loose, encode_layout(cloud, lay_out_loose(cloud), settings, {}));
-  if (loose.geometry_bytes() >= best.geometry_bytes()) return best;
-  loose.layout.notes.push_back("The points take less one after the other than on their rings.");
+  const bool has_image = layout.scan.counts.kept > 0;
+  Result<RecordEncoding> laid_out = encode_layout(cloud, std::move(layout), settings, progress);
+  if (!laid_out && laid_out.error().code == ErrorCode::invalid_argument && has_image) {
+    Result<RecordEncoding> loose = encode_layout(cloud, lay_out_loose(cloud), settings, {});
+    if (!loose) return laid_out;
+    loose->layout.notes.push_back(
+        "The target is out of the reach of ranges on a lattice: the points are coded one after "
+        "the other, without a field.");
+    return loose;
+  }
+  CURLIDAR_TRY_ASSIGN(best, std::move(laid_out));
+  // Bits compare where both keep to an error; a step means another error for points alone.
+  const CompactTarget target = settings.compact.target;
+  const bool comparable = target != CompactTarget::bits_per_point && target != CompactTarget::step;
+  if (certain || !comparable) return best;
+  Result<RecordEncoding> loose = encode_layout(cloud, lay_out_loose(cloud), settings, {});
+  if (!loose || loose->geometry_bytes() >= best.geometry_bytes()) return best;
+  loose->layout.notes.push_back("The points take less one after the other than on their rings.");
   return loose;
-}
-
-std::size_t framed(const std::vector<std::byte>& payload) {
-  return payload.empty() ? 0 : compact::frame_size(payload.size()) + payload.size();
 }
 
 RecordReport record_report(const RecordEncoding& encoding, const CompactSettings& settings) {

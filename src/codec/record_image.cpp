@@ -110,6 +110,7 @@ Result<CompactTrial> encode_exactly(CompactJob& job, std::uint64_t range_unit_q4
 }  // namespace
 
 Result<RecordImage> encode_record_image(const Cloud& cloud, const RecordLayout& layout,
+                                        const std::vector<Vec3>& loose,
                                         const EncodeSettings& settings, double beside_bits,
                                         const ProgressCallback& progress) {
   const bool exact = settings.compact.target == CompactTarget::lossless;
@@ -118,7 +119,7 @@ Result<RecordImage> encode_record_image(const Cloud& cloud, const RecordLayout& 
   out.model = model_of(cloud, layout, error_m);
   add_offsets(cloud, layout.scan, error_m, step_of_offsets(settings.compact, error_m), out.model);
   CompactJob job{cloud, layout.scan, out.model, settings.compact, settings.threads, progress};
-  job.loose = layout.loose;
+  job.loose = loose;
   job.beside_bits = beside_bits;
   if (!exact) {
     const RowModel rows = rows_of(layout, out.model, cloud, error_m);

@@ -13,9 +13,10 @@ struct RecordImage {
   CompactTrial trial;
 };
 
-/// Encodes the image of a layout that has one. `beside_bits`: what the file takes besides. Errors
-/// as search_target.
+/// Encodes the image of a layout that has one. `loose`: the points without a cell as decoded;
+/// `beside_bits`: what the file takes besides. Errors as search_target.
 Result<RecordImage> encode_record_image(const Cloud& cloud, const RecordLayout& layout,
+                                        const std::vector<Vec3>& loose,
                                         const EncodeSettings& settings, double beside_bits,
                                         const ProgressCallback& progress);
 

@@ -10,6 +10,7 @@
 
 #include "base/try.hpp"
 #include "cloud/neighbours.hpp"
+#include "compact/scan_header.hpp"
 
 namespace curlidar {
 namespace {
@@ -36,7 +37,8 @@ Result<double> neighbour_error(const std::vector<Vec3>& points, const std::vecto
 Result<double> miss_of(const std::vector<Vec3>& points, const CodedPoints& coded,
                        const CompactSettings& settings, double beside_bits, std::size_t threads) {
   if (settings.target == CompactTarget::bits_per_point) {
-    const double bits = 8.0 * static_cast<double>(coded.bytes.size()) + beside_bits;
+    const std::size_t bytes = compact::frame_size(coded.bytes.size()) + coded.bytes.size();
+    const double bits = 8.0 * static_cast<double>(bytes) + beside_bits;
     return bits / static_cast<double>(points.size()) / settings.target_value;
   }
   if (settings.target == CompactTarget::error_nn) {
