@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "base/float32.hpp"
 #include "base/stopwatch.hpp"
 #include "base/try.hpp"
 #include "codec/chosen_attributes.hpp"
@@ -175,11 +178,25 @@ Result<RecordEncoding> encode_layout(Cloud given, RecordLayout layout,
   return out;
 }
 
+/// The cloud's type of coordinates, or float64 if it cannot hold them: clouds made by hand may say
+/// float32 and hold doubles.
+ScalarType exact_type(const Cloud& cloud) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  const auto single = [](double x) {
+    return !std::isfinite(x) || (std::abs(x) <= kMost && round_to_float32(x) == x);
+  };
+  const bool fits = std::all_of(cloud.positions.begin(), cloud.positions.end(), [&](const Vec3& p) {
+    return single(p.x) && single(p.y) && single(p.z);
+  });
+  return cloud.position_type == ScalarType::float32 && fits ? ScalarType::float32
+                                                            : ScalarType::float64;
+}
+
 /// The cloud without the attributes that are not kept.
 Result<Cloud> kept_cloud(const Cloud& cloud, const EncodeSettings& settings) {
   Cloud kept;
   kept.positions = cloud.positions;
-  kept.position_type = cloud.position_type;
+  kept.position_type = exact_type(cloud);
   kept.width = cloud.width;
   kept.height = cloud.height;
   CURLIDAR_TRY_ASSIGN(attributes, choose_attributes(cloud, settings.attributes));
