@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "curlidar/lattice.hpp"
+#include "curlidar/vec3.hpp"
 
 namespace curlidar {
 
@@ -26,16 +26,17 @@ class Field {
   virtual void evaluate_row(double row, std::span<const double> columns, bool masked,
                             std::span<double> ranges) const = 0;
 
-  /// Elevation at which a point at `range` metres of a fractional row is seen: that of the row,
-  /// unless its beams start away from the origin.
-  virtual double elevation(double row, [[maybe_unused]] double range) const {
-    return lattice().elevation(row);
-  }
-  /// Whether elevation() does not depend on the range.
-  virtual bool one_elevation_a_row() const { return true; }
+  /// The points of such a line in the frame of the coded cloud: element i lies ranges[i] along
+  /// columns[i], and is NaN where the range is. All three have the same size.
+  virtual void place_row(double row, std::span<const double> columns,
+                         std::span<const double> ranges, std::span<Vec3> points) const;
 
   /// Whether the cell holds a coded return.
   virtual bool occupied(std::uint32_t row, std::uint32_t column) const = 0;
+
+  /// The cell, row * columns + column, whose return is nearest to a direction; a cell without one
+  /// if the direction is nobody's.
+  virtual std::size_t nearest_cell(double row, double column) const;
 };
 
 }  // namespace curlidar

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -13,6 +14,7 @@
 #include "codec/compact_field.hpp"
 #include "codec/compact_model.hpp"
 #include "codec/record_file.hpp"
+#include "compact/ray_tables.hpp"
 #include "format/attributes_chunk.hpp"
 #include "format/metadata_chunk.hpp"
 
@@ -41,27 +43,33 @@ compact::ScanChunks scan_chunks(const PartialContainer& container) {
 /// Which cells a region holds.
 class RegionFilter {
  public:
-  RegionFilter(const ScanRegion& region, const compact::ScanParameters& size)
-      : rows_{std::min(region.ring_begin, size.rows), std::min(region.ring_end, size.rows)},
-        columns_(size.columns, false) {
-    const double turn = 2 * std::numbers::pi;
-    const double width = region.azimuth_end - region.azimuth_begin;
-    for (std::uint32_t column = 0; column < size.columns; ++column) {
-      const double azimuth = -std::numbers::pi + turn * column / size.columns;
-      double from_begin = std::fmod(azimuth - region.azimuth_begin, turn);
-      if (from_begin < 0) from_begin += turn;
-      columns_[column] = width >= turn || from_begin < width;
+  RegionFilter(const ScanRegion& region, const compact::ScanHeader& header)
+      : begin_(region.azimuth_begin),
+        width_(region.azimuth_end - region.azimuth_begin),
+        along_rays_(header.table.rays.has_value()),
+        rows_{std::min(region.ring_begin, header.parameters.rows),
+              std::min(region.ring_end, header.parameters.rows)},
+        columns_(header.parameters.columns, along_rays_) {
+    if (along_rays_) return;
+    const auto columns = static_cast<double>(columns_.size());
+    for (std::size_t column = 0; column < columns_.size(); ++column) {
+      columns_[column] =
+          holds(-std::numbers::pi + 2 * std::numbers::pi * static_cast<double>(column) / columns);
     }
   }
 
-  bool holds(std::uint32_t row, std::uint32_t column) const {
-    return row >= rows_[0] && row < rows_[1] && columns_[column];
+  /// Cells on even columns are held by their azimuths; rays, which start beside the spin axis and
+  /// may have been moved, by those of their points.
+  bool holds(std::uint32_t row, std::uint32_t column, const Vec3& point) const {
+    return row >= rows_[0] && row < rows_[1] &&
+           (along_rays_ ? holds(azimuth_of(point)) : columns_[column]);
   }
   bool empty() const {
     return rows_[0] >= rows_[1] ||
            std::find(columns_.begin(), columns_.end(), true) == columns_.end();
   }
-  /// The smallest range of cells with all of the region; the whole turn if it crosses the seam.
+  /// The smallest range of cells with all of the region; the whole turn if it crosses the seam, and
+  /// of rays.
   compact::Region bounds() const {
     const auto first = std::find(columns_.begin(), columns_.end(), true);
     const auto last = std::find(columns_.rbegin(), columns_.rend(), true);
@@ -70,8 +78,17 @@ class RegionFilter {
   }
 
  private:
-  std::uint32_t rows_[2];
-  std::vector<bool> columns_;
+  bool holds(double azimuth) const {
+    const double turn = 2 * std::numbers::pi;
+    double from_begin = std::fmod(azimuth - begin_, turn);
+    if (from_begin < 0) from_begin += turn;
+    return width_ >= turn || from_begin < width_;
+  }
+
+  double begin_, width_;
+  bool along_rays_;
+  std::array<std::uint32_t, 2> rows_;
+  std::vector<bool> columns_;  ///< that may hold something
 };
 
 Status check_region(const ScanRegion& region) {
@@ -85,14 +102,16 @@ Status check_region(const ScanRegion& region) {
 }
 
 /// Numbers of the returns that are kept, among those of the whole scan; empties the other cells.
-std::vector<std::uint32_t> crop(compact::DecodedScan& scan, const RegionFilter& filter) {
+/// `points`: of all coded cells.
+std::vector<std::uint32_t> crop(compact::DecodedScan& scan, std::span<const Vec3> points,
+                                const RegionFilter& filter) {
   std::vector<std::uint32_t> kept;
   std::uint32_t number = 0;
   std::size_t cell = 0;
   for (std::uint32_t row = 0; row < scan.parameters.rows; ++row) {
     for (std::uint32_t column = 0; column < scan.parameters.columns; ++column, ++cell) {
       const bool coded = scan.range[cell] > 0;
-      if (filter.holds(row, column)) {
+      if (filter.holds(row, column, coded ? points[number] : Vec3{})) {
         if (coded) kept.push_back(number);
       } else {
         scan.occupied[cell] = 0;
@@ -110,15 +129,32 @@ double metres(std::int32_t units) {
   return static_cast<double>(units) / compact::kRangeUnit;
 }
 
+Ring ring_of(const compact::RowTable& table, std::size_t row) {
+  Ring ring;
+  ring.elevation = radians_from_angle(table.elevation[row]);
+  if (!table.height.empty()) ring.vertical_offset_m = metres(table.height[row]);
+  if (!table.rays) return ring;
+  const compact::Ray& ray = table.rays->rays[row];
+  ring.azimuth_offset = radians_from_angle(ray.azimuth_offset);
+  ring.vertical_offset_m = metres(ray.height);
+  ring.horizontal_offset_m = metres(ray.lateral);
+  ring.range_phase_m = metres(ray.range_phase);
+  return ring;
+}
+
 SensorProfile sensor_of(const compact::RowTable& table, const compact::DecodedScan& scan) {
   SensorProfile sensor;
   sensor.name = "unknown";
   sensor.columns = table.turn_columns;
   for (std::size_t row = 0; row < table.elevation.size(); ++row) {
-    Ring ring;
-    ring.elevation = radians_from_angle(table.elevation[row]);
-    if (!table.height.empty()) ring.vertical_offset_m = metres(table.height[row]);
-    sensor.rings.push_back(ring);
+    sensor.rings.push_back(ring_of(table, row));
+  }
+  if (table.rays) {
+    const compact::BeamTable* frozen = compact::beam_table(table.rays->table);
+    sensor.slots = table.rays->slots;
+    sensor.range_unit_m =
+        0x1p-48 * static_cast<double>(frozen != nullptr ? frozen->range_unit_q48
+                                                        : table.rays->range_unit_q48);
   }
   sensor.fov_up = sensor.rings.front().elevation;
   sensor.fov_down = sensor.rings.back().elevation;
@@ -231,7 +267,7 @@ Result<ImageParts> decode_image(const PartialContainer& container, const DecodeO
   if (options.region) {
     CURLIDAR_TRY(check_region(*options.region));
     CURLIDAR_TRY_ASSIGN(header, decode_scan_header(chunks, limits));
-    out.filter.emplace(*options.region, header.parameters);
+    out.filter.emplace(*options.region, header);
     if (out.filter->empty()) {
       return Error{ErrorCode::invalid_argument,
                    fmt::format("the region holds none of the scan's {} rings and {} columns",
@@ -296,7 +332,7 @@ Status take_image(const PartialContainer& container, const compact::DecodedScan&
 /// Leaves only what lies in the region. Points without a cell belong to no ring: they are in no
 /// region.
 void crop_to(const RegionFilter& filter, compact::DecodedScan& scan, DecodedScan& out) {
-  const std::vector<std::uint32_t> kept = crop(scan, filter);
+  const std::vector<std::uint32_t> kept = crop(scan, out.points, filter);
   Cloud records;
   records.positions = std::move(out.points);
   records.attributes = std::move(out.attributes);

@@ -5,9 +5,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "codec/ray_columns.hpp"
 #include "compact/scan_decoder.hpp"
 #include "curlidar/field.hpp"
 
@@ -18,6 +20,10 @@ namespace curlidar {
 /// hold at least half of the weight and their surfaces agree to 0.3 m + 10 %. On the lattice's rows
 /// the range offset of the ring is added, so that every cell has exactly its coded range; between
 /// them it would be an error of the sensor drawn into the surface.
+///
+/// Cells that are the sensor's own rays make no difference to who asks: rows are theirs, columns as
+/// many as firings but evenly around the turn. Lines of sight start on the spin axis, at the height
+/// of their row; ranges are lengths along them. Points go where the motion of the scan takes them.
 class CompactField : public Field {
  public:
   explicit CompactField(compact::DecodedScan scan);
@@ -25,11 +31,12 @@ class CompactField : public Field {
   const Lattice& lattice() const override { return lattice_; }
   void evaluate_row(double row, std::span<const double> columns, bool masked,
                     std::span<double> ranges) const override;
-  double elevation(double row, double range) const override;
-  bool one_elevation_a_row() const override { return height_m_.empty(); }
+  void place_row(double row, std::span<const double> columns, std::span<const double> ranges,
+                 std::span<Vec3> points) const override;
   bool occupied(std::uint32_t row, std::uint32_t column) const override {
     return scan_.range[cell(row, column)] > 0;
   }
+  std::size_t nearest_cell(double row, double column) const override;
 
  private:
   /// A cell and its weight.
@@ -38,24 +45,42 @@ class CompactField : public Field {
     double weight = 0;
   };
 
+  using Corners = std::array<Corner, 4>;
+
+  /// A fractional row between two of the lattice's.
+  struct Between {
+    std::uint32_t top = 0, bottom = 0;
+    double down = 0;
+  };
+
   std::size_t cell(std::uint32_t row, std::uint32_t column) const {
     return static_cast<std::size_t>(row) * lattice_.columns() + column;
   }
-  double range_at(const std::array<Corner, 4>& corners, const compact::Direction& direction,
-                  bool masked) const;
-  std::int32_t offset(std::uint32_t row) const {
-    return scan_.table.range_offset.empty() ? 0 : scan_.table.range_offset[row];
-  }
-  /// Coded range without the ring's offset, metres.
+  Between between(double row) const;
+  Corners corners_of(const Between& rows, double column) const;
+  /// Height over the sensor's origin at which beams of a row cross the spin axis, metres.
+  double height_at(const Between& rows) const;
+  /// Where a line of sight of a row starts, beside the field's centre.
+  compact::Origin origin_of(const Between& rows) const;
+  double range_at(const Corners& corners, const compact::Sight& sight, bool masked) const;
+  /// What the coded ranges of a row have added to the field's.
+  std::int32_t offset(std::uint32_t row) const;
+  /// Coded range without the offset of its ring, from the spin axis, metres.
   double calibrated(std::size_t cell) const;
-  /// Range of a coded cell's surface in another direction, metres.
-  double extend(std::size_t cell, const compact::Direction& direction) const;
+  /// Range of a coded cell's surface along another line of sight, metres.
+  double extend(std::size_t cell, const compact::Sight& sight) const;
+  /// The nearest coded cell where no corner is one.
+  std::uint32_t replacement(const Corners& corners) const;
+  void find_corrections();
+  void find_rays();
 
   compact::DecodedScan scan_;
   Lattice lattice_;
   std::vector<double> height_m_;          ///< of the rows; empty = all 0
+  std::vector<double> level_;             ///< of rays: cosines of the rows' elevations
   std::vector<std::int32_t> correction_;  ///< coded range - its surface's, Q16, of each cell
   std::vector<std::uint32_t> nearest_;    ///< coded cell nearest to each cell
+  std::optional<RayColumns> rays_;
 };
 
 /// The field of a file without one: nothing anywhere.

@@ -33,30 +33,29 @@ std::vector<std::uint32_t> number_returns(const Field& field) {
   return numbers;
 }
 
-Line evaluate_line(const Field& field, const DenseGrid& grid, std::size_t i,
-                   const std::vector<double>& columns, const std::vector<Vec3>& circle,
+Line evaluate_line(const Field& field, double row, const std::vector<double>& columns,
                    const std::vector<std::uint32_t>& numbers, const ReconstructSettings& settings) {
-  const Lattice& lattice = field.lattice();
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> ranges(columns.size());
-  field.evaluate_row(grid.row(i), columns, settings.masks, ranges);
-  const bool one_elevation = field.one_elevation_a_row();
-  double elevation = lattice.elevation(grid.row(i));
-  double flat = std::cos(elevation), up = std::sin(elevation);
-  const double nearest_row =
-      std::clamp(std::round(grid.row(i)), 0.0, static_cast<double>(lattice.rows() - 1));
-  const std::size_t line_begin = static_cast<std::size_t>(nearest_row) * lattice.columns();
-  Line line;
+  field.evaluate_row(row, columns, settings.masks, ranges);
+  std::vector<double> seen_columns, seen_ranges;
   for (std::size_t j = 0; j < columns.size(); ++j) {
-    if (std::isnan(ranges[j]) && !settings.organised) continue;
-    const double r = ranges[j];
-    if (!one_elevation && !std::isnan(r)) {
-      elevation = field.elevation(grid.row(i), r);
-      flat = std::cos(elevation);
-      up = std::sin(elevation);
+    if (std::isnan(ranges[j])) continue;
+    seen_columns.push_back(columns[j]);
+    seen_ranges.push_back(ranges[j]);
+  }
+  std::vector<Vec3> seen(seen_ranges.size());
+  field.place_row(row, seen_columns, seen_ranges, seen);
+  Line line;
+  std::size_t next = 0;
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    if (!std::isnan(ranges[j])) {
+      line.points.push_back(seen[next++]);
+      line.nearest.push_back(numbers[field.nearest_cell(row, columns[j])]);
+    } else if (settings.organised) {
+      line.points.push_back({kNan, kNan, kNan});
+      line.nearest.push_back(kNoReturn);
     }
-    line.points.push_back({r * flat * circle[j].x, r * flat * circle[j].y, r * up});
-    const auto column = static_cast<std::size_t>(std::round(columns[j])) % lattice.columns();
-    line.nearest.push_back(std::isnan(r) ? kNoReturn : numbers[line_begin + column]);
   }
   return line;
 }
@@ -125,15 +124,11 @@ Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& se
     if (!scan.points.empty()) return coded_cloud(scan, settings.organised);
   }
   std::vector<double> columns(grid.columns);
-  std::vector<Vec3> circle(grid.columns);
-  for (std::size_t j = 0; j < columns.size(); ++j) {
-    columns[j] = grid.column(j);
-    circle[j] = direction_of(0, field.lattice().azimuth(columns[j]));
-  }
+  for (std::size_t j = 0; j < columns.size(); ++j) columns[j] = grid.column(j);
   const std::vector<std::uint32_t> numbers = number_returns(field);
   std::vector<Line> lines(grid.rows);
   parallel_for(lines.size(), settings.threads, [&](std::size_t i) {
-    lines[i] = evaluate_line(field, grid, i, columns, circle, numbers, settings);
+    lines[i] = evaluate_line(field, grid.row(i), columns, numbers, settings);
   });
 
   Cloud cloud;
