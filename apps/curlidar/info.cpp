@@ -203,6 +203,34 @@ Details compact_details(const CompactContents& c) {
                       statistics_text(c.statistics))};
 }
 
+Json beams_json(const SensorProfile& sensor) {
+  Json beams = Json::array();
+  for (const Ring& ring : sensor.rings) {
+    beams.push_back({{"elevation_deg", degrees(ring.elevation)},
+                     {"azimuth_offset_deg", degrees(ring.azimuth_offset)},
+                     {"vertical_offset_m", ring.vertical_offset_m},
+                     {"horizontal_offset_m", ring.horizontal_offset_m},
+                     {"range_phase_m", ring.range_phase_m}});
+  }
+  return beams;
+}
+
+/// How a file with every return has their directions.
+Details lattice_details(const RecordContents& records, const SensorProfile& sensor) {
+  Json json = {{"lattice", {{"kind", to_string(records.lattice)}, {"loose", records.loose}}}};
+  std::string text = to_string(records.lattice);
+  if (records.lattice == RecordLattice::rays) {
+    json["lattice"].update({{"firings", records.firings},
+                            {"slots", records.slots},
+                            {"motion", records.motion},
+                            {"range_unit_m", sensor.range_unit_m},
+                            {"beams", beams_json(sensor)}});
+    text += fmt::format(" of the sensor, {} firings in {} slots{}", records.firings, records.slots,
+                        records.motion ? ", motion compensated" : "");
+  }
+  return {json, fmt::format("{}; {} points without a cell", text, count_text(records.loose))};
+}
+
 /// Bytes of all chunks of a name together.
 struct Part {
   std::string name;
@@ -258,6 +286,7 @@ Outcome describe_curl(const Job& job, std::span<const std::byte> bytes, std::siz
   line("sensor", fmt::format("{}, {} rings", scan.sensor.name, scan.sensor.rings.size()));
   line("grid", fmt::format("{} x {}, {} rows", lattice.rows(), lattice.columns(),
                            lattice.is_uniform() ? "uniform" : "ring"));
+  if (scan.records) line("lattice", lattice_details(*scan.records, scan.sensor).text);
   line("returns", fmt::format("{} coded", count_text(scan.coded_returns)));
   line("attributes", attribute_names(scan.attributes));
   for (const auto& [key, value] : scan.metadata) line("metadata", key + " = " + value);
@@ -277,6 +306,7 @@ Outcome describe_curl(const Job& job, std::span<const std::byte> bytes, std::siz
                {"chunks", chunks},
                {"attributes", attribute_json(scan.attributes)},
                {"metadata", scan.metadata}};
+  if (scan.records) json.update(lattice_details(*scan.records, scan.sensor).json);
   const Details details = scan.compact ? compact_details(*scan.compact) : paper_details(scan);
   json.update(details.json);
   return {json, text + details.text};

@@ -43,14 +43,17 @@ compact::ScanChunks scan_chunks(const PartialContainer& container) {
 /// Which cells a region holds.
 class RegionFilter {
  public:
-  RegionFilter(const ScanRegion& region, const compact::ScanHeader& header)
+  /// `by_points`: cells are held by the azimuths of their points, as needs be for rays, which start
+  /// beside the spin axis and may have been moved, and for returns with directions of their own;
+  /// else by those of even columns.
+  RegionFilter(const ScanRegion& region, const compact::ScanHeader& header, bool by_points)
       : begin_(region.azimuth_begin),
         width_(region.azimuth_end - region.azimuth_begin),
-        along_rays_(header.table.rays.has_value()),
+        by_points_(by_points),
         rows_{std::min(region.ring_begin, header.parameters.rows),
               std::min(region.ring_end, header.parameters.rows)},
-        columns_(header.parameters.columns, along_rays_) {
-    if (along_rays_) return;
+        columns_(header.parameters.columns, by_points_) {
+    if (by_points_) return;
     const auto columns = static_cast<double>(columns_.size());
     for (std::size_t column = 0; column < columns_.size(); ++column) {
       columns_[column] =
@@ -58,18 +61,16 @@ class RegionFilter {
     }
   }
 
-  /// Cells on even columns are held by their azimuths; rays, which start beside the spin axis and
-  /// may have been moved, by those of their points.
   bool holds(std::uint32_t row, std::uint32_t column, const Vec3& point) const {
     return row >= rows_[0] && row < rows_[1] &&
-           (along_rays_ ? holds(azimuth_of(point)) : columns_[column]);
+           (by_points_ ? holds(azimuth_of(point)) : columns_[column]);
   }
   bool empty() const {
     return rows_[0] >= rows_[1] ||
            std::find(columns_.begin(), columns_.end(), true) == columns_.end();
   }
-  /// The smallest range of cells with all of the region; the whole turn if it crosses the seam, and
-  /// of rays.
+  /// The smallest range of cells with all of the region; the whole turn if it crosses the seam or
+  /// goes by points.
   compact::Region bounds() const {
     const auto first = std::find(columns_.begin(), columns_.end(), true);
     const auto last = std::find(columns_.rbegin(), columns_.rend(), true);
@@ -86,7 +87,7 @@ class RegionFilter {
   }
 
   double begin_, width_;
-  bool along_rays_;
+  bool by_points_;
   std::array<std::uint32_t, 2> rows_;
   std::vector<bool> columns_;  ///< that may hold something
 };
@@ -267,7 +268,8 @@ Result<ImageParts> decode_image(const PartialContainer& container, const DecodeO
   if (options.region) {
     CURLIDAR_TRY(check_region(*options.region));
     CURLIDAR_TRY_ASSIGN(header, decode_scan_header(chunks, limits));
-    out.filter.emplace(*options.region, header);
+    out.filter.emplace(*options.region, header,
+                       header.table.rays.has_value() || has_records(container.chunks));
     if (out.filter->empty()) {
       return Error{ErrorCode::invalid_argument,
                    fmt::format("the region holds none of the scan's {} rings and {} columns",
