@@ -321,8 +321,9 @@ Result<Encoded> encode_records(const Cloud& source, const EncodeSettings& settin
   report.stages_ms.push_back({"attributes", watch.lap_ms()});
 
   std::map<std::string, std::string> named = source.metadata;
-  if (!named.empty() && !encoding.layout.scan.sensor.empty()) {
-    named.emplace(kSensorKey, encoding.layout.scan.sensor);
+  const GriddedScan& scan = encoding.layout.scan;
+  if (!named.empty() && !scan.cell_centres && !scan.sensor.empty()) {
+    named.emplace(kSensorKey, scan.sensor);
   }
   CURLIDAR_TRY_ASSIGN(metadata, metadata_payload(named));
   out.bytes = write_file(encoding, settings.compact, metadata);
