@@ -21,6 +21,7 @@
 #include "hostile/targets/points.hpp"
 #include "hostile/targets/residual.hpp"
 #include "hostile/targets/scan.hpp"
+#include "support/promised_clouds.hpp"
 #include "support/ray_tables.hpp"
 #include "support/record_chunks.hpp"
 
@@ -118,6 +119,51 @@ void write_files(const Seeds& seeds) {
       seeds.write("decode", name + "-part", reframed(file, {7, 0}, false));
       seeds.write("decode", name + "-cut", reframed(file, {8, 200}, false));
       seeds.write("scan", name, reframed(file, {test::kNodes, 0, 0, 0, 0}, true));
+    }
+  }
+}
+
+/// A small cloud, and the sensor that says what its rays are.
+struct RecordSource {
+  const char* name;
+  Cloud cloud;
+  std::optional<SensorProfile> sensor{};
+};
+
+std::vector<RecordSource> record_sources() {
+  const SensorProfile sensor = test::exact_sensor(6, 48);
+  Cloud rays = test::with_second_returns(
+      test::exact_scan(sensor),
+      [](std::size_t i, const Vec3& p) { return i % 20 == 0 ? p * 1.5 : Vec3{}; });
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Cloud typed = test::with_holes(test::unsteady_scan(4, 10), 9, {nan, nan, nan});
+  test::add_all_types(typed);
+  Cloud box = test::clouds_without_rings().front().cloud;
+  box = select(box, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19});
+  box.positions[5] = {0, 0, 0};
+  return {{"rays", std::move(rays), sensor},
+          {"rings", test::unsteady_scan(6, 64)},
+          {"organised", test::organised_scan(6, 40)},
+          {"typed", std::move(typed)},
+          {"loose", std::move(box)}};
+}
+
+/// Files with every return: whole, without residuals, in part and cut off.
+void write_record_files(const Seeds& seeds) {
+  for (const RecordSource& source : record_sources()) {
+    for (const CompactTarget target :
+         {CompactTarget::error, CompactTarget::max_error, CompactTarget::lossless}) {
+      EncodeSettings settings;
+      settings.sensor = source.sensor;
+      settings.compact.target = target;
+      settings.compact.effort = 1;
+      const auto file = encode(source.cloud, settings)->bytes;
+      const std::string name =
+          std::string("records-") + source.name + "-" + std::to_string(static_cast<int>(target));
+      seeds.write("decode", name, reframed(file, {4, 0}, false));
+      if (target != CompactTarget::max_error) continue;
+      seeds.write("decode", name + "-part", reframed(file, {3, 0}, false));
+      seeds.write("decode", name + "-cut", reframed(file, {8, 200}, false));
     }
   }
 }
@@ -275,6 +321,7 @@ void write_points(const Seeds& seeds) {
 void write_all(const Seeds& seeds) {
   write_records_chunks(seeds);
   write_files(seeds);
+  write_record_files(seeds);
   write_points(seeds);
   for (const char* scene : {"street", "room"}) {
     const CompactImage scan = image_of(scene, 12, 64);

@@ -353,6 +353,7 @@ Result<DecodedScan> decode_compact(const PartialContainer& container,
   out.profile = Profile::compact;
   const bool records = has_records(container.chunks);
   const bool has_image = find_chunk(container.chunks, ChunkType::compact_parameters) != nullptr;
+  if (!records && container.complete) CURLIDAR_TRY(check_no_records(container.chunks));
   ImageParts parts;
   if (has_image) {
     CURLIDAR_TRY_ASSIGN(decoded, decode_image(container, options));

@@ -192,8 +192,22 @@ ScalarType exact_type(const Cloud& cloud) {
                                                             : ScalarType::float64;
 }
 
+/// Whether the cloud is one: what io reads always is.
+Status check_cloud(const Cloud& cloud) {
+  const auto invalid = [](const std::string& what) {
+    return Error{ErrorCode::invalid_argument, what};
+  };
+  if (cloud.size() >= kNoPoint) return invalid("a cloud has less than 2^32 - 1 points");
+  if (cloud.organised() && std::uint64_t{cloud.width} * cloud.height != cloud.size()) {
+    return invalid(
+        fmt::format("a cloud of {} x {} with {} points", cloud.width, cloud.height, cloud.size()));
+  }
+  return {};
+}
+
 /// The cloud without the attributes that are not kept.
 Result<Cloud> kept_cloud(const Cloud& cloud, const EncodeSettings& settings) {
+  CURLIDAR_TRY(check_cloud(cloud));
   Cloud kept;
   kept.positions = cloud.positions;
   kept.position_type = exact_type(cloud);

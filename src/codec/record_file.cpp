@@ -23,6 +23,15 @@ bool has_records(const std::vector<Chunk>& chunks) {
   return find_chunk(chunks, ChunkType::order) != nullptr;
 }
 
+Status check_no_records(const std::vector<Chunk>& chunks) {
+  for (const ChunkType type : {ChunkType::loose, ChunkType::corrections, ChunkType::records}) {
+    if (const Chunk* chunk = find_chunk(chunks, type)) {
+      return PayloadReader(*chunk).corrupt("its points have no order: there is no order chunk");
+    }
+  }
+  return {};
+}
+
 void round_to(ScalarType type, std::vector<Vec3>& points) {
   if (type != ScalarType::float32) return;
   for (Vec3& p : points) {

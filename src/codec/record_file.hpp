@@ -17,6 +17,10 @@ namespace curlidar {
 /// Whether the chunks are those of a file with every return.
 bool has_records(const std::vector<Chunk>& chunks);
 
+/// Corrupt if there are chunks that only files with every return have: of a whole file without an
+/// order.
+Status check_no_records(const std::vector<Chunk>& chunks);
+
 /// Coordinates as a type holds them.
 void round_to(ScalarType type, std::vector<Vec3>& points);
 

@@ -83,6 +83,11 @@ Result<CloudOrder> read_shape(PayloadReader& reader, std::uint64_t& slots,
     return reader.corrupt(fmt::format("unknown type {} of coordinates", type));
   }
   order.type = static_cast<ScalarType>(type);
+  const bool fits = order.width <= UINT32_MAX && order.height <= UINT32_MAX;
+  if (!fits || (order.height > 1 && order.width * order.height != slots)) {
+    return reader.corrupt(
+        fmt::format("a cloud of {} x {} with {} slots", order.width, order.height, slots));
+  }
   if (slots > max_slots) {
     return reader.error(
         ErrorCode::limit_exceeded,

@@ -80,6 +80,9 @@ class Order:
         self.type = reader.u8()
         if self.type > 9 or slots < grid.records:
             raise Corrupt("shape of a cloud")
+        if max(self.width, self.height) >> 32 or (
+                self.height > 1 and self.width * self.height != slots):
+            raise Corrupt("shape of a cloud")
         self.decoder = RangeDecoder(reader.bytes(reader.varint()))
         self.grid = grid
         walk = Walk(self.decoder, grid).cells() if grid.rows * grid.columns else []

@@ -57,7 +57,7 @@ inline Status read_all_chunks(ByteSpan file) {
 }
 
 /// A sensor of three rings.
-inline SensorProfile small_sensor() {
+inline SensorProfile three_ring_sensor() {
   SensorProfile sensor;
   sensor.name = "small";
   sensor.description = "three rings";
@@ -78,7 +78,7 @@ inline std::vector<std::byte> whole_file() {
   for (std::size_t i = 0; i < intensity.size(); ++i) intensity[i] = static_cast<float>(i) / 8;
   for (std::size_t i = 0; i < colour.size(); ++i) colour[i] = static_cast<std::uint16_t>(i * i);
   ContainerWriter writer;
-  writer.add(ChunkType::sensor, *write_sensor(small_sensor()));
+  writer.add(ChunkType::sensor, *write_sensor(three_ring_sensor()));
   writer.add(ChunkType::parameters, write_parameters({}));
   writer.add(ChunkType::point_grid, pack_bits(cells));
   writer.add(ChunkType::patches, pack(std::vector<std::byte>(5000, std::byte{3})));

@@ -2,6 +2,7 @@
 // Whole .curl files of every profile: decoded, listed, reconstructed.
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include "curlidar/codec.hpp"
@@ -28,18 +29,44 @@ inline std::vector<std::byte> framed(FuzzInput& input) {
   return std::move(writer).finish();
 }
 
+/// Of files with every return: a slot for each of the order, attributes for each, points in as many
+/// slots as there are records, within the limits.
+inline std::string check_cloud(const DecodedScan& scan, const DecodeLimits& limits) {
+  if (!scan.records) return scan.cloud ? "a cloud of no records" : "";
+  if (!scan.cloud) return "";
+  const Cloud& cloud = *scan.cloud;
+  if (cloud.size() > limits.max_cells) return "more slots than allowed";
+  if (cloud.size() != scan.records->slots_of_cloud) return "not a position for each slot";
+  if (cloud.organised() && std::uint64_t{cloud.width} * cloud.height != cloud.size()) {
+    return "a shape of another size";
+  }
+  if (cloud.size() < scan.points.size()) return "fewer slots than points";
+  if (scan.records->loose > scan.points.size()) return "more loose points than points";
+  for (const Attribute& attribute : cloud.attributes) {
+    if (size_of(attribute.values) != cloud.size() * attribute.components) {
+      return "an attribute of the cloud of another length";
+    }
+  }
+  for (const Vec3& p : scan.points) {
+    if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))) return "no point";
+  }
+  return "";
+}
+
 inline std::string check_decoded(ByteSpan file, const DecodeOptions& options) {
   const auto chunks = list_chunks(file);
   const auto scan = decode(file, options);
   if (!scan) return scan.error().message.empty() ? "an error without a message" : "";
   if (!chunks && !options.allow_truncated) return "decoded, but not to be listed";
-  const bool compact = scan->compact.has_value();
+  if (const std::string broken = check_cloud(*scan, options.limits); !broken.empty()) return broken;
+  const bool compact = scan->profile == Profile::compact;
+  const std::size_t wanted = scan->cloud ? scan->cloud->size() : scan->points.size();
   if (compact && scan->points.size() != scan->coded_returns) return "points are not the returns";
   if (scan->field == nullptr) return "no field";
   ReconstructSettings settings;
   settings.max_points = 1u << 14;
   if (const auto cloud = reconstruct(*scan, settings); cloud && compact) {
-    if (cloud->positions.size() != scan->points.size()) return "not one point for each return";
+    if (cloud->positions.size() != wanted) return "not one point for each return";
     for (const Attribute& attribute : cloud->attributes) {
       if (size_of(attribute.values) != cloud->positions.size() * attribute.components) {
         return "an attribute of another length";

@@ -148,6 +148,41 @@ TEST(RecordPromise, FilesOfAnImageAreRefused) {
   EXPECT_EQ(proof.error().code, ErrorCode::unsupported);
 }
 
+TEST(RecordPromise, CloudsThatAreNoneAreRefused) {
+  const Cloud good = test::organised_scan();
+  const auto refused = [](const Cloud& cloud) {
+    const auto file = encode(cloud);
+    return !file && file.error().code == ErrorCode::invalid_argument;
+  };
+  Cloud cloud = good;
+  cloud.height += 1;
+  EXPECT_TRUE(refused(cloud)) << "shape";
+  cloud = good;
+  cloud.attributes.push_back({"short", 1, std::vector<float>(good.size() - 1)});
+  EXPECT_TRUE(refused(cloud)) << "attribute";
+}
+
+TEST(RecordPromise, CoordinatesBecomeDoublesWhereFloatsDoNotHoldThem) {
+  Cloud cloud = test::organised_scan();
+  cloud.positions[first_return(cloud)].x += 1e-9;
+  const auto file = encoded({"", cloud}, CompactTarget::lossless, 0).bytes;
+  EXPECT_TRUE(verify(file, cloud)->ok);
+  EXPECT_EQ(decode(file)->cloud->position_type, ScalarType::float64);
+}
+
+TEST(RecordPromise, PointsWithoutAnOrderAreCorrupt) {
+  const test::NamedCloud named{"", test::unsteady_scan()};
+  const auto file = encoded(named, CompactTarget::max_error, 0.02).bytes;
+  ContainerWriter writer;
+  const std::vector<Chunk> chunks = read_container(file).value();
+  for (const Chunk& chunk : chunks) {
+    if (chunk.type != ChunkType::order) writer.add(chunk.type, chunk.payload);
+  }
+  const auto scan = decode(std::move(writer).finish());
+  ASSERT_FALSE(scan);
+  EXPECT_EQ(scan.error().code, ErrorCode::corrupt);
+}
+
 TEST(RecordPromise, OnlyLengthsAreBounds) {
   const test::NamedCloud named = test::clouds_without_rings().front();
   const auto file = encoded(named, CompactTarget::max_error, 0.02).bytes;

@@ -148,9 +148,24 @@ TEST(Order, AnyPermutationOfAnySlots) {
       }
     }
     order.type = ScalarType::float64;
-    order.width = 3;
+    while (order.kind.size() % 17 != 0) order.kind.push_back(SlotKind::nan);
+    order.width = order.kind.size() / 17;
     order.height = 17;
     check(order, cells.grid());
+  }
+}
+
+TEST(Order, ShapesOfOtherSizesAreCorrupt) {
+  CloudOrder order;
+  order.kind.assign(12, SlotKind::nan);
+  for (const auto& [width, height] : {std::pair<std::uint64_t, std::uint64_t>{4, 4},
+                                      {1ull << 32, 1},
+                                      {12, 1ull << 32},
+                                      {1ull << 62, 4}}) {
+    order.width = width;
+    order.height = height;
+    const auto payload = encode_order(order, {});
+    EXPECT_FALSE(decode_order({ChunkType::order, payload, 0}, {}, 100)) << width;
   }
 }
 
