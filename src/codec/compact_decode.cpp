@@ -254,7 +254,8 @@ struct ImageParts {
 
 /// Chunks that number all returns of a scan, so that every mask must be known to find a part.
 bool numbers_returns(const std::vector<Chunk>& chunks) {
-  return find_chunk(chunks, ChunkType::attributes) != nullptr || has_records(chunks);
+  return find_chunk(chunks, ChunkType::attributes) != nullptr ||
+         find_chunk(chunks, ChunkType::directions) != nullptr || has_records(chunks);
 }
 
 Result<ImageParts> decode_image(const PartialContainer& container, const DecodeOptions& options) {
@@ -326,7 +327,9 @@ Status take_image(const PartialContainer& container, const compact::DecodedScan&
                         read_attributes(*chunk, out.coded_returns, options.limits.max_bytes));
     out.attributes = std::move(attributes);
   }
-  CURLIDAR_TRY_ASSIGN(points, decode_cell_points(container.chunks, scan.table, image_of(scan)));
+  const bool exact = !options.field_only && scan.missing.empty();
+  CURLIDAR_TRY_ASSIGN(points,
+                      decode_cell_points(container.chunks, scan.table, image_of(scan), exact));
   out.points = std::move(points);
   return {};
 }

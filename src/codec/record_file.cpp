@@ -58,9 +58,9 @@ RecordGeometry RecordCells::geometry(std::size_t loose) const {
 
 Result<std::vector<Vec3>> decode_cell_points(const std::vector<Chunk>& chunks,
                                              const compact::RowTable& table,
-                                             const compact::Image& image) {
+                                             const compact::Image& image, bool exact) {
   std::vector<DirectionOffset> offsets;
-  if (const Chunk* chunk = find_chunk(chunks, ChunkType::directions)) {
+  if (const Chunk* chunk = find_chunk(chunks, ChunkType::directions); chunk != nullptr && exact) {
     if (table.rays || image.rows == 0) {
       return PayloadReader(*chunk).corrupt("offsets of directions without even columns");
     }
@@ -75,7 +75,7 @@ Result<DecodedRecords> decode_records(const std::vector<Chunk>& chunks,
                                       const compact::RowTable& table, const compact::Image& image,
                                       bool exact, const DecodeLimits& limits) {
   DecodedRecords out;
-  CURLIDAR_TRY_ASSIGN(points, decode_cell_points(chunks, table, image));
+  CURLIDAR_TRY_ASSIGN(points, decode_cell_points(chunks, table, image, exact));
   out.points = std::move(points);
   if (const Chunk* chunk = find_chunk(chunks, ChunkType::loose)) {
     CURLIDAR_TRY_ASSIGN(loose, decode_loose(*chunk, limits.max_cells));

@@ -55,10 +55,11 @@ Result<DecodedRecords> decode_records(const std::vector<Chunk>& chunks,
                                       const compact::RowTable& table, const compact::Image& image,
                                       bool exact, const DecodeLimits& limits);
 
-/// The points of the cells with the offsets of their directions, if there are any.
+/// The points of the cells with the offsets of their directions, if there are any; without `exact`
+/// in the middles of the cells: offsets are coded in terms of the exact ranges of all cells.
 Result<std::vector<Vec3>> decode_cell_points(const std::vector<Chunk>& chunks,
                                              const compact::RowTable& table,
-                                             const compact::Image& image);
+                                             const compact::Image& image, bool exact);
 
 /// Every record in its slot.
 Cloud assemble_cloud(const DecodedRecords& records);

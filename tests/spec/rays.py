@@ -149,11 +149,13 @@ class Rays:
     def encoder_angle(self, firing):
         return ((1 << 31) + (self.firings[firing] << 32) // self.slots) % ONE_TURN
 
+    def shift(self, row):
+        """Columns that the firings of a row are moved by."""
+        return _rounded(self.rays[row][0] * len(self.firings), 32)
+
     def azimuth(self, row, column):
-        offset = self.rays[row][0]
-        count = len(self.firings)
-        firing = (column - _rounded(offset * count, 32)) % count
-        return (self.encoder_angle(firing) + offset) % ONE_TURN
+        firing = (column - self.shift(row)) % len(self.firings)
+        return (self.encoder_angle(firing) + self.rays[row][0]) % ONE_TURN
 
     def origin(self, row, column):
         """Of a cell, beside the field's centre, Q16."""

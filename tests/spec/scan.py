@@ -134,14 +134,14 @@ class Scan:
                 range_ = clip(range_ + self.offsets[row + i], 1, TOP)
             self.range[row + i][column + j] = range_
 
-    def point(self, row, column):
-        """x, y, z in units of 2^-36 m."""
+    def point(self, row, column, across=0, up=0):
+        """x, y, z in units of 2^-36 m, beside the middle of the cell by two binary angles."""
         p, r = self.parameters, self.range[row][column]
         if self.rays:
             return self.rays.point(row, column, r)
-        sin_e, cos_e = sin_cos(self.table.elevation[row] + self.heights[row] * 683565276 // r)
+        sin_e, cos_e = sin_cos(self.table.elevation[row] + self.heights[row] * 683565276 // r + up)
         turn = p.first_column + column
-        sin_a, cos_a = sin_cos((1 << 31) + (turn << 32) // p.turn_columns)
+        sin_a, cos_a = sin_cos((1 << 31) + (turn << 32) // p.turn_columns + across)
 
         def rounded(a, bits):
             return (a + (1 << bits - 1)) >> bits

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -168,6 +169,27 @@ TEST(RecordPromise, CoordinatesBecomeDoublesWhereFloatsDoNotHoldThem) {
   const auto file = encoded({"", cloud}, CompactTarget::lossless, 0).bytes;
   EXPECT_TRUE(verify(file, cloud)->ok);
   EXPECT_EQ(decode(file)->cloud->position_type, ScalarType::float64);
+}
+
+/// Offsets of directions are coded in terms of the exact ranges: without those they cannot be read.
+TEST(RecordPromise, WithoutResidualsPointsLieInTheMiddlesOfTheirCells) {
+  const test::NamedCloud named{"", test::unsteady_scan()};
+  const auto file = encoded(named, CompactTarget::error, 0.02);
+  ASSERT_GT(file.report.records->bytes.directions, 0u);
+  DecodeOptions options;
+  options.field_only = true;
+  const auto scan = decode(file.bytes, options);
+  ASSERT_TRUE(scan && scan->cloud) << scan.error().message;
+  ASSERT_EQ(scan->cloud->size(), named.cloud.size());
+  EXPECT_EQ(scan->records->promise, RecordPromise{});
+  // A return whose column is taken lies in the next.
+  const double two_columns = 4.01 * std::numbers::pi / file.report.compact->columns;
+  for (std::size_t i = 0; i < named.cloud.size(); ++i) {
+    const Vec3 &a = scan->cloud->positions[i], &b = named.cloud.positions[i];
+    const double turn =
+        std::remainder(std::atan2(a.y, a.x) - std::atan2(b.y, b.x), 2 * std::numbers::pi);
+    EXPECT_LE(std::abs(turn), two_columns) << i;
+  }
 }
 
 TEST(RecordPromise, PointsWithoutAnOrderAreCorrupt) {
