@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,11 @@
 #include "curlidar/codec.hpp"
 #include "format/parameters_chunk.hpp"
 #include "format/sensor_chunk.hpp"
+#include "hostile/targets/decode.hpp"
+#include "records/order.hpp"
 #include "support/chunks.hpp"
 #include "support/clouds.hpp"
+#include "support/promised_clouds.hpp"
 #include "support/scans.hpp"
 
 namespace curlidar {
@@ -119,6 +123,105 @@ TEST(HostileDecode, DamagedCompactFilesDecodedInPart) {
       ASSERT_TRUE(reconstruct(*scan, {.rows = 2, .masks = false}));
     } else {
       ASSERT_FALSE(scan.error().message.empty());
+    }
+  }
+}
+
+/// Small files with every return: on rays, on rings with offsets of directions, of loose points.
+std::vector<std::vector<std::byte>> record_files() {
+  const SensorProfile sensor = test::exact_sensor(6, 48);
+  Cloud loose = test::clouds_without_rings().front().cloud;
+  loose.positions[3] = {0, 0, 0};
+  loose.positions[4].x = std::numeric_limits<double>::infinity();
+  const std::vector<test::NamedCloud> clouds{{"rays", test::exact_scan(sensor), sensor},
+                                             {"rings", test::unsteady_scan(6, 48)},
+                                             {"organised", test::organised_scan(6, 40)},
+                                             {"loose", std::move(loose)}};
+  std::vector<std::vector<std::byte>> files;
+  for (const test::NamedCloud& named : clouds) {
+    for (const auto target :
+         {CompactTarget::error, CompactTarget::max_error, CompactTarget::lossless}) {
+      EncodeSettings settings;
+      settings.sensor = named.sensor;
+      settings.compact.target = target;
+      settings.compact.effort = 1;
+      files.push_back(encode(named.cloud, settings)->bytes);
+    }
+  }
+  return files;
+}
+
+TEST(HostileRecords, CutAnywhere) {
+  for (const auto& file : record_files()) {
+    DecodeOptions options;
+    options.limits = kLimits;
+    options.allow_truncated = true;
+    for (std::size_t size = 0; size < file.size(); size += 1 + file.size() / 100) {
+      const ByteSpan cut = ByteSpan(file).first(size);
+      ASSERT_FALSE(decode(cut, kLimits)) << "cut at " << size;
+      const auto scan = decode(cut, options);
+      ASSERT_TRUE(scan ? !scan->missing.empty() : !scan.error().message.empty()) << size;
+    }
+  }
+}
+
+TEST(HostileRecords, DamageBehindRightChecksums) {
+  test::Random random(23);
+  std::size_t decoded = 0;
+  for (const auto& file : record_files()) {
+    for (int i = 0; i < 150; ++i) {
+      auto damaged = file;
+      for (std::uint64_t n = 1 + random.below(3); n > 0; --n) {
+        damaged[8 + random.below(file.size() - 8)] = static_cast<std::byte>(random.next());
+      }
+      DecodeOptions options;
+      options.limits = kLimits;
+      options.partition = true;
+      options.field_only = i % 5 == 0;
+      const auto bytes = test::with_right_checksums(damaged);
+      ASSERT_EQ(test::check_decoded(bytes, options), "") << "case " << i;
+      decoded += decode(bytes, options) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(decoded, 50u) << "the damage never reached a readable file";
+}
+
+TEST(HostileRecords, LimitsHoldForSlotsAndLoosePoints) {
+  for (const auto& file : record_files()) {
+    const auto scan = decode(file, kLimits);
+    ASSERT_TRUE(scan) << scan.error().message;
+    const DecodeLimits limits{scan->cloud->size() - 1, kLimits.max_bytes};
+    const auto refused = decode(file, limits);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, ErrorCode::limit_exceeded);
+  }
+}
+
+/// A few bytes that claim as many slots or points as a number holds.
+TEST(HostileRecords, ClaimsAreNotBelieved) {
+  const auto file_with = [](ChunkType type, const std::vector<std::byte>& payload) {
+    CloudOrder none;
+    ContainerWriter writer;
+    if (type != ChunkType::order) writer.add(ChunkType::order, encode_order(none, {}));
+    writer.add(type, payload);
+    return std::move(writer).finish();
+  };
+  for (const std::uint64_t claim : {std::uint64_t{1} << 24, std::uint64_t{1} << 40, UINT64_MAX}) {
+    ByteWriter order;
+    order.write_varint(claim);
+    order.write_varint(claim);
+    order.write_varint(1);
+    order.write(static_cast<std::uint8_t>(ScalarType::float32));
+    order.write_varint(0);
+    EXPECT_FALSE(decode(file_with(ChunkType::order, std::move(order).bytes()), kLimits));
+    for (const ChunkType type : {ChunkType::loose, ChunkType::corrections}) {
+      ByteWriter points;
+      points.write(std::uint8_t{2});
+      points.write(static_cast<std::uint8_t>(ScalarType::float32));
+      points.write(std::uint8_t{0});
+      points.write_varint(claim);
+      points.write(std::int16_t{0});
+      EXPECT_FALSE(decode(file_with(type, std::move(points).bytes()), kLimits));
     }
   }
 }
