@@ -3,6 +3,7 @@
 // and on nothing, and what drivers, maps and mishaps put in them.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -283,17 +284,23 @@ inline std::vector<NamedCloud> clouds_without_rings() {
   return out;
 }
 
-/// All of the above and one with every type of attribute, each with the number of the slot.
-inline std::vector<NamedCloud> promised_clouds() {
-  std::vector<NamedCloud> out = scans_on_rays();
-  for (auto* make : {scans_on_rings, odd_clouds, clouds_without_rings}) {
-    for (NamedCloud& next : make()) out.push_back(std::move(next));
-  }
+inline std::vector<NamedCloud> clouds_with_attributes() {
   NamedCloud typed{"attributes", unsteady_scan(6, 120)};
   typed.cloud.attributes.clear();
   add_all_types(typed.cloud);
-  out.push_back(std::move(typed));
-  return out;
+  return {std::move(typed)};
 }
+
+/// All of the above.
+struct CloudGroup {
+  const char* name;
+  std::vector<NamedCloud> (*clouds)();
+};
+inline constexpr std::array<CloudGroup, 5> kPromisedClouds{
+    {{"scans_on_rays", scans_on_rays},
+     {"scans_on_rings", scans_on_rings},
+     {"odd_clouds", odd_clouds},
+     {"clouds_without_rings", clouds_without_rings},
+     {"clouds_with_attributes", clouds_with_attributes}}};
 
 }  // namespace curlidar::test

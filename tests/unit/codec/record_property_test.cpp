@@ -162,41 +162,39 @@ void expect_out_of_reach(const test::NamedCloud& named, const Error& error) {
   EXPECT_GT(coarse->report.compact->bits_per_point_coded, 20) << error.message;
 }
 
-class Promised : public testing::TestWithParam<test::NamedCloud> {};
-
-TEST_P(Promised, ComesBackInEveryMode) {
+void check_every_mode(const test::NamedCloud& named) {
   for (const Mode& mode : kModes) {
     SCOPED_TRACE(mode.name);
-    const auto encoded = encode(GetParam().cloud, settings_for(GetParam(), mode));
+    const auto encoded = encode(named.cloud, settings_for(named, mode));
     if (mode.target == CompactTarget::bits_per_point && !encoded) {
-      expect_out_of_reach(GetParam(), encoded.error());
+      expect_out_of_reach(named, encoded.error());
       continue;
     }
     ASSERT_TRUE(encoded) << encoded.error().message;
-    check_file(*encoded, GetParam().cloud, mode);
+    check_file(*encoded, named.cloud, mode);
   }
 }
 
-TEST_P(Promised, ThreadsDoNotChangeTheBytes) {
+void check_threads(const test::NamedCloud& named) {
   for (const Mode& mode : {kModes[1], kModes[3], kModes[4]}) {
-    EncodeSettings settings = settings_for(GetParam(), mode);
-    const auto one = encode(GetParam().cloud, settings);
+    EncodeSettings settings = settings_for(named, mode);
+    const auto one = encode(named.cloud, settings);
     settings.threads = 4;
-    const auto four = encode(GetParam().cloud, settings);
+    const auto four = encode(named.cloud, settings);
     ASSERT_TRUE(one && four);
     EXPECT_TRUE(one->bytes == four->bytes) << mode.name;
   }
 }
 
 /// With the order given up, the number of its slot tells which point a slot of the file is.
-TEST_P(Promised, ComesBackInAnyOrder) {
-  Cloud given = GetParam().cloud;
+void check_any_order(const test::NamedCloud& named) {
+  Cloud given = named.cloud;
   std::vector<std::uint32_t> numbers(given.size());
   for (std::uint32_t i = 0; i < numbers.size(); ++i) numbers[i] = i;
   given.attributes.push_back({"number", 1, std::move(numbers)});
   for (const Mode& mode : {kModes[3], kModes[4]}) {
     SCOPED_TRACE(mode.name);
-    EncodeSettings settings = settings_for(GetParam(), mode);
+    EncodeSettings settings = settings_for(named, mode);
     settings.compact.keep_order = false;
     const auto encoded = encode(given, settings);
     ASSERT_TRUE(encoded) << encoded.error().message;
@@ -215,8 +213,29 @@ TEST_P(Promised, ComesBackInAnyOrder) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Clouds, Promised, testing::ValuesIn(test::promised_clouds()),
-                         [](const auto& test) { return test.param.name; });
+class Promised : public testing::TestWithParam<test::CloudGroup> {
+ protected:
+  template <class Check>
+  void each(const Check& check) {
+    for (const test::NamedCloud& named : GetParam().clouds()) {
+      SCOPED_TRACE(named.name);
+      check(named);
+    }
+  }
+};
+
+TEST_P(Promised, ComesBackInEveryMode) {
+  each(check_every_mode);
+}
+TEST_P(Promised, ThreadsDoNotChangeTheBytes) {
+  each(check_threads);
+}
+TEST_P(Promised, ComesBackInAnyOrder) {
+  each(check_any_order);
+}
+
+INSTANTIATE_TEST_SUITE_P(Clouds, Promised, testing::ValuesIn(test::kPromisedClouds),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace
 }  // namespace curlidar
