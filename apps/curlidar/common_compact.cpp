@@ -155,6 +155,13 @@ std::string breakdown_text(const CompactBreakdown& b, std::size_t returns) {
   return table.text();
 }
 
+std::string promise_text(const RecordPromise& promise) {
+  std::string text = "none for single points";
+  if (promise.bit_exact) text = "bit for bit";
+  if (promise.bound_m > 0) text = "every point within " + length_text(promise.bound_m);
+  return text + (promise.any_order ? ", in any order" : ", in the order of the scan");
+}
+
 std::string statistics_text(const CompactStatistics& s) {
   Table table;
   for (std::size_t i = 0; i < s.leaves_by_size.size(); ++i) {

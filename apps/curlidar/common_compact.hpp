@@ -44,6 +44,8 @@ Json breakdown_json(const CompactBreakdown& breakdown);
 Json statistics_json(const CompactStatistics& statistics);
 /// Aligned lines: bits per return and share of each part.
 std::string breakdown_text(const CompactBreakdown& breakdown, std::size_t returns);
+/// How exactly a file says that its points come back.
+std::string promise_text(const RecordPromise& promise);
 /// Leaves by size and layers, layers by functions.
 std::string statistics_text(const CompactStatistics& statistics);
 

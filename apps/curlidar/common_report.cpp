@@ -30,6 +30,14 @@ std::string Table::text() const {
   return text;
 }
 
+std::string lines_text(const std::vector<std::pair<std::string, std::string>>& lines) {
+  std::size_t width = 0;
+  for (const auto& [key, value] : lines) width = std::max(width, key.size());
+  std::string text;
+  for (const auto& [key, value] : lines) text += fmt::format("  {:<{}}  {}\n", key, width, value);
+  return text;
+}
+
 std::string count_text(std::uint64_t count) {
   std::string text = std::to_string(count);
   for (std::size_t end = text.size(); end > 3; end -= 3) text.insert(end - 3, 1, ',');

@@ -8,6 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "curlidar/progress.hpp"
@@ -29,6 +30,9 @@ class Table {
 };
 
 /// 122627 -> "122,627".
+/// "  key    value" lines with the values below each other.
+std::string lines_text(const std::vector<std::pair<std::string, std::string>>& lines);
+
 std::string count_text(std::uint64_t count);
 /// "917 B", "13.5 kB", "2.3 MB".
 std::string bytes_text(std::uint64_t bytes);

@@ -17,14 +17,14 @@ namespace curlidar::app {
 namespace {
 
 constexpr const char* kFooter = R"(Examples:
-  curlidar decode scan.curl                        the coded returns, one for one, in scan.decoded.pcd
+  curlidar decode scan.curl                        the scan as it was, in scan.decoded.pcd
   curlidar decode scan.curl --rows 8 -o dense.ply  8 times denser from top to bottom
   curlidar decode scan.curl --rows 1.5 --cols 0.5 -o other.npy
   curlidar decode out/*.curl -o back/ --format bin --attributes intensity
   curlidar decode scan.curl --rings 16:48 --azimuth -45:45 -o ahead.pcd
   curlidar decode cut.curl --allow-truncated       as far as the file goes
 The format follows the extension of -o, or --format. KITTI .bin and nuScenes files hold fixed
-attributes: choose them with --attributes.)";
+attributes: choose them with --attributes. Depth images give the coded returns, one for one.)";
 
 struct Options {
   CommonOptions common;
@@ -209,7 +209,7 @@ Command add_decode(CLI::App& root) {
   app->add_option("--region", options->region, "Both at once, such as 16:48,-45:45")
       ->type_name("RINGS,AZIMUTHS");
   app->add_flag("--field-only", options->field_only,
-                "Leave the residual layer out (compact files)");
+                "Leave residuals and corrections out (compact files)");
   app->add_flag("--allow-truncated", options->allow_truncated,
                 "Take files that are cut off as far as they go, with a warning of what is missing");
   app->add_option("--attributes", options->attributes,

@@ -17,9 +17,13 @@ namespace {
 constexpr const char* kFooter = R"(Examples:
   curlidar encode scan.pcd                        makes scan.curl beside it, 5 cm mean error
   curlidar encode scans/*.bin -o out/ --error 0.02
+  curlidar encode scan.pcd --max-error 0.02      every point within 2 cm, as 'verify' proves
+  curlidar encode scan.pcd --lossless
   curlidar encode scan.bin --sensor hdl64e-kitti --attributes none --bits 1 --effort 9
   curlidar encode - --format pcd <scan.pcd >scan.curl
   curlidar encode room.pcd --profile paper --preset indoor --upsample 1x1 -o room.curl
+Every return is kept, in its place, with its attributes, unless --cols, --min-range or --max-range
+ask for a depth image.
 With --attributes none the file holds geometry only, and no metadata but those of --meta.
 The order is: preset, then what the profile changes, then the options given here.)";
 
@@ -89,6 +93,7 @@ Json records_json(const RecordReport& r) {
           {"corrected", r.corrected},
           {"bound_m", r.promise.bound_m > 0 ? Json(r.promise.bound_m) : Json()},
           {"bit_exact", r.promise.bit_exact},
+          {"any_order", r.promise.any_order},
           {"bytes",
            {{"rays", r.bytes.rays},
             {"directions", r.bytes.directions},
@@ -138,6 +143,7 @@ std::string compact_text(const EncodeReport& report) {
   table.add({"rms error", length_text(c.rms_error_m)});
   table.add({"largest error", length_text(c.max_error_m)});
   if (c.error_nn_m) table.add({"nearest-neighbour error", length_text(*c.error_nn_m)});
+  if (c.rows == 0) return table.text();  // points one after the other
   table.add({"grid", fmt::format("{} rings x {}{}", c.rows, c.columns,
                                  c.cell_centres ? ", the input's own" : "")});
   table.add(
@@ -146,11 +152,88 @@ std::string compact_text(const EncodeReport& report) {
                    c.residual_step_m > 0 ? ", residual " + length_text(c.residual_step_m) : "")});
   table.add({"segments", count_text(c.segments)});
   table.add({"encodings tried", count_text(c.encodings)});
-  return table.text() + "Geometry:\n" + breakdown_text(c.breakdown, report.points_coded);
+  return table.text();
+}
+
+/// What the directions of a file with every return are.
+std::string lattice_text(const RecordReport& r) {
+  switch (r.lattice) {
+    case RecordLattice::none:
+      return "none: points one after the other";
+    case RecordLattice::rings:
+      return r.bytes.directions > 0 ? "rings on even columns, points beside them"
+                                    : "rings on even columns";
+    case RecordLattice::rays:
+      return r.table.empty() ? "rays, found or given, kept in the file"
+                             : fmt::format("rays of the known table {}", r.table);
+  }
+  return "";
+}
+
+std::string share_of(std::size_t part, std::size_t all) {
+  return fmt::format(
+      "{}, {:.2f} %", count_text(part),
+      100 * static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(all, 1)));
+}
+
+std::string records_text(const EncodeReport& report) {
+  const RecordReport& r = *report.records;
+  std::vector<std::pair<std::string, std::string>> lines;
+  lines.push_back({"promise", promise_text(r.promise)});
+  lines.push_back({"directions", lattice_text(r)});
+  if (r.lattice == RecordLattice::rays) {
+    lines.push_back({"points on it", fmt::format("{:.2f} %", 100 * r.share_on_lattice)});
+    lines.push_back({"medians of their distances from it",
+                     fmt::format("{} across, {} up, {} along", length_text(r.across_m),
+                                 length_text(r.up_m), length_text(r.range_m))});
+    lines.push_back(
+        {"firings", fmt::format("{} at {} positions", count_text(r.firings), count_text(r.slots))});
+    lines.push_back(
+        {"range unit", r.range_unit_m > 0 ? length_text(r.range_unit_m) : "none found"});
+    lines.push_back({"motion compensation", r.motion ? "undone" : "none found"});
+  }
+  if (r.lattice != RecordLattice::none) {
+    lines.push_back({"points without a cell", share_of(r.loose, report.points_in)});
+    lines.push_back({"points corrected", share_of(r.corrected, report.points_in)});
+  }
+  std::string text = "Every return:\n" + lines_text(lines);
+  for (const std::string& note : r.notes) text += fmt::format("  note: {}\n", note);
+  return text;
+}
+
+/// Bytes of everything in the file, or bits if nothing tells them apart.
+std::string parts_text(const EncodeReport& report) {
+  const std::string geometry =
+      "Geometry:\n" + breakdown_text(report.compact->breakdown, report.points_coded);
+  if (!report.records) return geometry;
+  const RecordBytes& bytes = report.records->bytes;
+  Table table;
+  const auto add = [&](const char* name, std::size_t size) {
+    if (size == 0) return;
+    const double bits = 8.0 * static_cast<double>(size) /
+                        static_cast<double>(std::max<std::size_t>(report.points_in, 1));
+    table.add({name, bytes_text(size), fmt::format("{:.4f} bits a point", bits),
+               fmt::format("{:.1f} %",
+                           100.0 * static_cast<double>(size) / static_cast<double>(report.bytes))});
+  };
+  const std::size_t beside = bytes.directions + bytes.loose + bytes.corrections + bytes.order;
+  const auto all_geometry = static_cast<std::size_t>(report.compact->breakdown.total() / 8 + 0.5);
+  add(report.compact->rows == 0 ? "container" : "image",
+      all_geometry - std::min(all_geometry, beside + bytes.rays));
+  add("rays", bytes.rays);
+  add("directions", bytes.directions);
+  add("points without a cell", bytes.loose);
+  add("corrections", bytes.corrections);
+  add("order", bytes.order);
+  add("attributes", bytes.attributes);
+  add("metadata", report.bytes - std::min(report.bytes, all_geometry + bytes.attributes));
+  const std::string parts = "Parts of the file:\n" + table.text();
+  return report.compact->rows == 0 ? parts : parts + geometry;
 }
 
 std::string dropped_text(const EncodeReport& report) {
   const ProjectionCounts& counts = report.projection;
+  if (report.points_coded == report.points_in) return "";
   std::string text = "Returns that are not coded one for one:\n";
   text += drop_text(counts.out_of_range, report, "out of range");
   text += drop_text(counts.out_of_fov, report, "outside the nominal field of view");
@@ -178,6 +261,8 @@ std::string report_text(const Job& job, const EncodeReport& report, Profile prof
   table.add({"bits per point in", fmt::format("{:.2f}", report.bits_per_point)});
   std::string text = fmt::format("{} -> {}\n{}", job.input, job.output, table.text());
   text += report.compact ? compact_text(report) : paper_text(report, preset);
+  if (report.records) text += records_text(report);
+  if (report.compact) text += parts_text(report);
   text += dropped_text(report);
   Table stages;
   double total = 0;
@@ -199,6 +284,9 @@ EncodeSettings settings_for(const Options& options, const Cloud& cloud) {
   if (settings.profile == Profile::compact) {
     options.compact.apply(settings.compact);
     need_option(validate(settings.compact));
+    if (!settings.compact.keep_order && !keeps_every_return(settings.compact)) {
+      usage_error("a depth image has its own order: leave --any-order out, or columns and ranges");
+    }
   } else if (!options.compact.first_given().empty()) {
     usage_error(fmt::format("{} belongs to the compact profile: leave --profile {} out",
                             options.compact.first_given(), to_string(settings.profile)));

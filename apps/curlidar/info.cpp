@@ -215,20 +215,89 @@ Json beams_json(const SensorProfile& sensor) {
   return beams;
 }
 
-/// How a file with every return has their directions.
-Details lattice_details(const RecordContents& records, const SensorProfile& sensor) {
-  Json json = {{"lattice", {{"kind", to_string(records.lattice)}, {"loose", records.loose}}}};
-  std::string text = to_string(records.lattice);
-  if (records.lattice == RecordLattice::rays) {
-    json["lattice"].update({{"firings", records.firings},
-                            {"slots", records.slots},
-                            {"motion", records.motion},
-                            {"range_unit_m", sensor.range_unit_m},
-                            {"beams", beams_json(sensor)}});
-    text += fmt::format(" of the sensor, {} firings in {} slots{}", records.firings, records.slots,
-                        records.motion ? ", motion compensated" : "");
+Json vector_json(const Vec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+Vec3 in_degrees(const Vec3& radians) {
+  return {degrees(radians.x), degrees(radians.y), degrees(radians.z)};
+}
+
+Json motion_json(const std::optional<RecordMotion>& motion) {
+  if (!motion) return nullptr;
+  return {{"turn_deg", vector_json(in_degrees(motion->turn))},
+          {"turn2_deg", vector_json(in_degrees(motion->turn2))},
+          {"move_m", vector_json(motion->move)},
+          {"move2_m", vector_json(motion->move2)},
+          {"rigid_turn_deg", vector_json(in_degrees(motion->rigid_turn))},
+          {"rigid_move_m", vector_json(motion->rigid_move)}};
+}
+
+std::string lattice_text(const RecordContents& r) {
+  switch (r.lattice) {
+    case RecordLattice::none:
+      return "none, points one after the other";
+    case RecordLattice::rings:
+      return r.directions ? "rings on even columns, points beside them" : "rings on even columns";
+    case RecordLattice::rays:
+      return r.table.empty() ? "rays, kept in the file" : "rays of the known table " + r.table;
   }
-  return {json, fmt::format("{}; {} points without a cell", text, count_text(records.loose))};
+  return "";
+}
+
+std::string motion_text(const RecordMotion& m) {
+  const Vec3 turn = in_degrees(m.turn);
+  return fmt::format(
+      "undone; in one turn the sensor moved ({:+.3f}, {:+.3f}, {:+.3f}) m and rotated ({:+.3f}, "
+      "{:+.3f}, {:+.3f}) deg",
+      m.move.x, m.move.y, m.move.z, turn.x, turn.y, turn.z);
+}
+
+/// What a file with every return says of itself.
+Details record_details(const RecordContents& r, const SensorProfile& sensor) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  lines.push_back({"promise", promise_text(r.promise)});
+  lines.push_back({"directions", lattice_text(r)});
+  if (r.lattice == RecordLattice::rays) {
+    lines.push_back(
+        {"firings", fmt::format("{} at {} positions", count_text(r.firings), count_text(r.slots))});
+    lines.push_back({"range unit", r.range_unit_m > 0 ? length_text(r.range_unit_m) : "not used"});
+    lines.push_back({"motion compensation", r.motion ? motion_text(*r.motion) : "none"});
+  }
+  lines.push_back({"points without a cell", count_text(r.loose)});
+  lines.push_back(
+      {"cloud", fmt::format("{} slots, {} x {} (width x height), {}", count_text(r.slots_of_cloud),
+                            r.width, r.height, to_string(r.coordinates))});
+  const bool rays = r.lattice == RecordLattice::rays;
+  const Json json = {{"lattice", to_string(r.lattice)},
+                     {"table", r.table.empty() ? Json() : Json(r.table)},
+                     {"directions", r.directions},
+                     {"corrections", r.corrections},
+                     {"firings", r.firings},
+                     {"slots", r.slots},
+                     {"range_unit_m", r.range_unit_m},
+                     {"motion", motion_json(r.motion)},
+                     {"beams", rays ? beams_json(sensor) : Json()},
+                     {"loose", r.loose},
+                     {"bound_m", r.promise.bound_m > 0 ? Json(r.promise.bound_m) : Json()},
+                     {"bit_exact", r.promise.bit_exact},
+                     {"any_order", r.promise.any_order},
+                     {"cloud_slots", r.slots_of_cloud},
+                     {"width", r.width},
+                     {"height", r.height},
+                     {"coordinates", to_string(r.coordinates)}};
+  return {{{"records", json}}, "every return:\n" + lines_text(lines)};
+}
+
+/// What the profile, and every return if the file has them, have to say.
+Details details_of(const DecodedScan& scan) {
+  if (!scan.records) return scan.compact ? compact_details(*scan.compact) : paper_details(scan);
+  Details details = record_details(*scan.records, scan.sensor);
+  if (!scan.compact) return details;
+  const Details image = compact_details(*scan.compact);
+  details.json.update(image.json);
+  details.text += image.text;
+  return details;
 }
 
 /// Bytes of all chunks of a name together.
@@ -283,11 +352,14 @@ Outcome describe_curl(const Job& job, std::span<const std::byte> bytes, std::siz
     text += fmt::format("  {:<12} {}\n", key, value);
   };
   line("profile", to_string(scan.profile));
-  line("sensor", fmt::format("{}, {} rings", scan.sensor.name, scan.sensor.rings.size()));
-  line("grid", fmt::format("{} x {}, {} rows", lattice.rows(), lattice.columns(),
-                           lattice.is_uniform() ? "uniform" : "ring"));
-  if (scan.records) line("lattice", lattice_details(*scan.records, scan.sensor).text);
-  line("returns", fmt::format("{} coded", count_text(scan.coded_returns)));
+  const bool has_grid = scan.compact || scan.paper;
+  if (has_grid) {
+    line("sensor", fmt::format("{}, {} rings", scan.sensor.name, scan.sensor.rings.size()));
+    line("grid", fmt::format("{} x {}, {} rows", lattice.rows(), lattice.columns(),
+                             lattice.is_uniform() ? "uniform" : "ring"));
+  }
+  line("returns", fmt::format("{}, {}", count_text(scan.coded_returns),
+                              scan.records ? "every one of the scan" : "those of a depth image"));
   line("attributes", attribute_names(scan.attributes));
   for (const auto& [key, value] : scan.metadata) line("metadata", key + " = " + value);
   line("size", fmt::format("{}, {:.3f} bits a return", bytes_text(bytes.size()),
@@ -297,8 +369,9 @@ Outcome describe_curl(const Job& job, std::span<const std::byte> bytes, std::siz
                {"profile", to_string(scan.profile)},
                {"sensor", scan.sensor.name},
                {"rings", scan.sensor.rings.size()},
-               {"rows", lattice.rows()},
-               {"columns", lattice.columns()},
+               {"rows", has_grid ? lattice.rows() : 0},
+               {"columns", has_grid ? lattice.columns() : 0},
+               {"every_return", scan.records.has_value()},
                {"points_coded", scan.coded_returns},
                {"bytes", bytes.size()},
                {"bits_per_point_coded", bits_a_return(bytes.size(), scan)},
@@ -306,8 +379,7 @@ Outcome describe_curl(const Job& job, std::span<const std::byte> bytes, std::siz
                {"chunks", chunks},
                {"attributes", attribute_json(scan.attributes)},
                {"metadata", scan.metadata}};
-  if (scan.records) json.update(lattice_details(*scan.records, scan.sensor).json);
-  const Details details = scan.compact ? compact_details(*scan.compact) : paper_details(scan);
+  const Details details = details_of(scan);
   json.update(details.json);
   return {json, text + details.text};
 }

@@ -19,6 +19,7 @@ constexpr const char* kFooter = R"(Try it:
   curlidar demo                            simulates a street and shows all of it in demo-out/
   curlidar encode scan.pcd                 makes scan.curl
   curlidar decode scan.curl --rows 8 -o dense.ply
+  curlidar verify scan.curl scan.pcd       proves that the file keeps what it promises
   curlidar compare scan.pcd scan.curl      how far apart they are, both ways
 
 '-' reads standard input or writes standard output. 'curlidar COMMAND --help' says more.

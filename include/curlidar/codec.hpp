@@ -75,7 +75,11 @@ struct CompactReport {
 struct RecordPromise {
   bool bit_exact = false;
   double bound_m = 0;  ///< no point lies farther from its original; 0: nothing is promised
+  /// The order of the points and the empty slots were given up: the returns are a set.
+  bool any_order = false;
 
+  /// Whether anything is said of every single point.
+  bool of_points() const { return bit_exact || bound_m > 0; }
   friend bool operator==(const RecordPromise&, const RecordPromise&) = default;
 };
 
@@ -186,13 +190,28 @@ struct CompactContents {
   std::vector<std::uint8_t> layer;
 };
 
+/// Motion compensation that was undone, over one turn of the sensor: how far each point was turned
+/// and moved grows with its azimuth, and with the square of it.
+struct RecordMotion {
+  Vec3 turn{}, turn2{};             ///< rotation vectors, radians a turn and a turn squared
+  Vec3 move{}, move2{};             ///< metres, likewise
+  Vec3 rigid_turn{}, rigid_move{};  ///< of the whole scan
+};
+
 /// What is special about a file with every return.
 struct RecordContents {
   RecordLattice lattice = RecordLattice::none;
-  std::size_t loose = 0;
-  std::uint32_t firings = 0, slots = 0;
-  bool motion = false;
-  std::size_t slots_of_cloud = 0;
+  std::string table;          ///< name of the known rays; empty: they are in the file, or none
+  bool directions = false;    ///< points lie beside their cells' middles
+  bool corrections = false;   ///< points are corrected one by one
+  std::size_t loose = 0;      ///< returns without a cell
+  std::uint32_t firings = 0;  ///< of rays
+  std::uint32_t slots = 0;    ///< positions of the encoder that rays may fire at
+  double range_unit_m = 0;    ///< ranges along rays are multiples of it; 0: of 2^-16 m
+  std::optional<RecordMotion> motion{};
+  std::size_t slots_of_cloud = 0;  ///< returns and empty slots
+  std::uint32_t width = 0, height = 1;
+  ScalarType coordinates = ScalarType::float32;
   RecordPromise promise;
 };
 

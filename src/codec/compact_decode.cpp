@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/try.hpp"
+#include "codec/cell_points.hpp"
 #include "codec/compact_field.hpp"
 #include "codec/compact_model.hpp"
 #include "codec/record_file.hpp"
@@ -262,7 +263,8 @@ Result<ImageParts> decode_image(const PartialContainer& container, const DecodeO
   const compact::ScanChunks chunks = scan_chunks(container);
   const compact::ScanLimits limits{options.limits.max_cells};
   compact::ScanOptions scan_options;
-  scan_options.field_only = options.field_only;
+  // Directions and attributes are coded with the whole ranges.
+  scan_options.field_only = options.field_only && !has_records(container.chunks);
   scan_options.keep_nodes = options.partition;
   scan_options.threads = options.threads;
   ImageParts out;
@@ -287,28 +289,56 @@ compact::Image image_of(const compact::DecodedScan& scan) {
   return {scan.parameters.rows, scan.parameters.columns, scan.range};
 }
 
+RecordMotion motion_of(const compact::Motion& motion) {
+  const auto vector = [](const compact::Motion::Triple& numbers, int fraction_bits) {
+    const auto number = [&](std::size_t i) { return std::ldexp(numbers[i], -fraction_bits); };
+    return Vec3{number(0), number(1), number(2)};
+  };
+  constexpr int kTurnBits = 30, kMoveBits = 16;
+  return {vector(motion.turn, kTurnBits),       vector(motion.turn2, kTurnBits),
+          vector(motion.move, kMoveBits),       vector(motion.move2, kMoveBits),
+          vector(motion.rigid_turn, kTurnBits), vector(motion.rigid_move, kMoveBits)};
+}
+
 RecordContents contents_of(const DecodedRecords& records, const compact::RowTable& table,
                            bool has_image) {
   RecordContents out;
   out.loose = records.loose;
   out.slots_of_cloud = records.order.slots();
+  out.width = static_cast<std::uint32_t>(records.order.width);
+  out.height = static_cast<std::uint32_t>(records.order.height);
+  out.coordinates = records.order.type;
   if (!has_image) return out;
   out.lattice = table.rays ? RecordLattice::rays : RecordLattice::rings;
   if (!table.rays) return out;
-  out.firings = static_cast<std::uint32_t>(table.rays->firings.size());
-  out.slots = table.rays->slots;
-  out.motion = !table.rays->motion.none();
+  const compact::RayTable& rays = *table.rays;
+  if (const compact::BeamTable* known = compact::beam_table(rays.table)) out.table = known->name;
+  out.firings = static_cast<std::uint32_t>(rays.firings.size());
+  out.slots = rays.slots;
+  out.range_unit_m = std::ldexp(static_cast<double>(rays.range_unit_q48), -48);
+  if (!rays.motion.none()) out.motion = motion_of(rays.motion);
   return out;
 }
 
 /// Points and attributes of a file with every return, and its cloud.
-Status take_records(const PartialContainer& container, const compact::RowTable& table,
-                    const compact::Image& image, const DecodeOptions& options, DecodedScan& out) {
+Status take_records(const PartialContainer& container, compact::DecodedScan& scan,
+                    const DecodeOptions& options, DecodedScan& out) {
+  const compact::RowTable& table = scan.table;
+  const compact::Image image = image_of(scan);
+  if (options.field_only) scan.range = scan.field_range;
+  const compact::Image field = image_of(scan);
   CURLIDAR_TRY_ASSIGN(
-      records, decode_records(container.chunks, table, image, !options.field_only, options.limits));
+      records, decode_records(container.chunks, table, image, options.field_only ? &field : nullptr,
+                              options.limits));
   out.records = contents_of(records, table, image.rows > 0);
+  out.records->directions = find_chunk(container.chunks, ChunkType::directions) != nullptr;
+  out.records->corrections = find_chunk(container.chunks, ChunkType::corrections) != nullptr;
   CURLIDAR_TRY_ASSIGN(promise, read_promise(container.chunks));
-  if (!options.field_only) out.records->promise = promise;
+  if (options.field_only) {
+    promise.bit_exact = false;
+    promise.bound_m = 0;
+  }
+  out.records->promise = promise;
   out.coded_returns = records.points.size();
   out.attributes = attributes_of_records(records);
   out.cloud = assemble_cloud(records);
@@ -327,9 +357,11 @@ Status take_image(const PartialContainer& container, const compact::DecodedScan&
                         read_attributes(*chunk, out.coded_returns, options.limits.max_bytes));
     out.attributes = std::move(attributes);
   }
+  // Offsets of directions are coded in terms of the exact ranges of all cells.
   const bool exact = !options.field_only && scan.missing.empty();
-  CURLIDAR_TRY_ASSIGN(points,
-                      decode_cell_points(container.chunks, scan.table, image_of(scan), exact));
+  const std::vector<Chunk> none;
+  CURLIDAR_TRY_ASSIGN(points, decode_cell_points(exact ? container.chunks : none, scan.table,
+                                                 image_of(scan), nullptr));
   out.points = std::move(points);
   return {};
 }
@@ -368,7 +400,7 @@ Result<DecodedScan> decode_compact(const PartialContainer& container,
   compact::DecodedScan& scan = parts.scan;
   for (const compact::Missing& missing : scan.missing) out.missing.push_back(to_string(missing));
   if (records && scan.missing.empty()) {
-    CURLIDAR_TRY(take_records(container, scan.table, image_of(scan), options, out));
+    CURLIDAR_TRY(take_records(container, scan, options, out));
   } else {
     CURLIDAR_TRY(take_image(container, scan, options, out));
   }
@@ -382,6 +414,8 @@ Result<DecodedScan> decode_compact(const PartialContainer& container,
     out.metadata = std::move(metadata);
     const auto name = out.metadata.find(kSensorKey);
     if (name != out.metadata.end()) out.sensor.name = name->second;
+  } else if (out.records && !out.records->table.empty()) {
+    out.sensor.name = out.records->table;
   }
   if (out.cloud) out.cloud->metadata = out.metadata;
   out.field = has_image

@@ -80,12 +80,23 @@ Result<DecodedScan> decode_paper(const std::vector<Chunk>& chunks, const DecodeL
   return scan;
 }
 
+/// Points that are coded one after the other are no scan before their order is known.
+Status check_cut(const PartialContainer& container) {
+  if (container.complete || is_compact(container.chunks)) return {};
+  const bool loose = find_chunk(container.chunks, ChunkType::loose) != nullptr ||
+                     (container.torn && container.torn->type == ChunkType::loose);
+  if (!loose) return {};
+  return Error{ErrorCode::corrupt,
+               "the file is cut off before the order of its points, without which nothing of it "
+               "can be decoded"};
+}
+
 /// A file may be cut off behind its geometry.
 void note_cut(const PartialContainer& container, DecodedScan& scan) {
   if (container.complete || !scan.missing.empty()) return;
-  scan.missing.push_back(container.torn
-                             ? fmt::format("its {} chunk", to_string(container.torn->type))
-                             : "its end, with any attributes and metadata behind it");
+  scan.missing.push_back(container.torn ? fmt::format("its {} chunk and what lies behind it",
+                                                      to_string(container.torn->type))
+                                        : "its end, with any attributes and metadata behind it");
 }
 
 }  // namespace
@@ -106,6 +117,7 @@ Result<DecodedScan> decode(std::span<const std::byte> bytes, const DecodeOptions
     container.complete = true;
     container.chunks = std::move(chunks);
   }
+  CURLIDAR_TRY(check_cut(container));
   if (is_compact(container.chunks)) {
     CURLIDAR_TRY_ASSIGN(scan, decode_compact(container, options));
     note_cut(container, scan);

@@ -21,8 +21,8 @@
 #include "codec/record_image.hpp"
 #include "codec/record_layout.hpp"
 #include "codec/record_loose.hpp"
+#include "codec/verify_slots.hpp"
 #include "compact/scan_header.hpp"
-#include "curlidar/verify.hpp"
 #include "image/range_image.hpp"
 #include "records/attributes.hpp"
 #include "records/corrections.hpp"
@@ -53,9 +53,11 @@ struct RecordEncoding {
 };
 
 RecordPromise promise_of(const CompactSettings& settings) {
-  if (settings.target == CompactTarget::lossless) return {true, 0};
-  if (settings.target == CompactTarget::max_error) return {false, settings.target_value};
-  return {};
+  RecordPromise promise;
+  promise.bit_exact = settings.target == CompactTarget::lossless;
+  if (settings.target == CompactTarget::max_error) promise.bound_m = settings.target_value;
+  promise.any_order = !settings.keep_order;
+  return promise;
 }
 
 /// The slots behind the records: cells in raster order, then loose points.
@@ -105,7 +107,7 @@ Status add_corrections(const Cloud& cloud, const std::vector<std::uint32_t>& slo
                        const CompactSettings& settings, const std::vector<Vec3>& loose,
                        RecordEncoding& encoding) {
   const RecordPromise promise = promise_of(settings);
-  if (!encoding.image || promise == RecordPromise{}) return {};
+  if (!encoding.image || !promise.of_points()) return {};
   std::vector<Vec3> predicted =
       points_of(encoding.image->model, encoding.image->trial.encoded.decoded);
   predicted.insert(predicted.end(), loose.begin(), loose.end());
@@ -341,7 +343,7 @@ Result<Encoded> encode_records(const Cloud& source, const EncodeSettings& settin
   }
   CURLIDAR_TRY_ASSIGN(metadata, metadata_payload(named));
   out.bytes = write_file(encoding, settings.compact, metadata);
-  CURLIDAR_TRY_ASSIGN(proof, verify(out.bytes, cloud, settings.threads));
+  CURLIDAR_TRY_ASSIGN(proof, verify_slots(out.bytes, cloud, settings.threads));
   if (!proof.ok) {
     return Error{ErrorCode::corrupt,
                  fmt::format("the file does not give back what it promises ({}), which is a "

@@ -15,7 +15,8 @@
 namespace curlidar {
 namespace {
 
-constexpr std::uint8_t kPromisesBound = 1, kPromisesBits = 2;
+/// Flags of the promise chunk.
+constexpr std::uint8_t kPromisesBound = 1, kPromisesBits = 2, kAnyOrder = 4;
 
 }  // namespace
 
@@ -58,9 +59,10 @@ RecordGeometry RecordCells::geometry(std::size_t loose) const {
 
 Result<std::vector<Vec3>> decode_cell_points(const std::vector<Chunk>& chunks,
                                              const compact::RowTable& table,
-                                             const compact::Image& image, bool exact) {
+                                             const compact::Image& image,
+                                             const compact::Image* coarse) {
   std::vector<DirectionOffset> offsets;
-  if (const Chunk* chunk = find_chunk(chunks, ChunkType::directions); chunk != nullptr && exact) {
+  if (const Chunk* chunk = find_chunk(chunks, ChunkType::directions)) {
     if (table.rays || image.rows == 0) {
       return PayloadReader(*chunk).corrupt("offsets of directions without even columns");
     }
@@ -68,14 +70,20 @@ Result<std::vector<Vec3>> decode_cell_points(const std::vector<Chunk>& chunks,
     CURLIDAR_TRY_ASSIGN(decoded, decode_directions(*chunk, cells.grid(0), cells.ranges()));
     offsets = std::move(decoded);
   }
-  return cell_points(table, image, offsets);
+  if (coarse == nullptr) return cell_points(table, image, offsets);
+  for (std::size_t cell = 0; cell < image.range.size(); ++cell) {
+    if ((image.range[cell] > 0) != (coarse->range[cell] > 0)) {
+      return Error{ErrorCode::corrupt, "the field and its residuals do not cover the same cells"};
+    }
+  }
+  return cell_points(table, *coarse, offsets);
 }
 
 Result<DecodedRecords> decode_records(const std::vector<Chunk>& chunks,
                                       const compact::RowTable& table, const compact::Image& image,
-                                      bool exact, const DecodeLimits& limits) {
+                                      const compact::Image* coarse, const DecodeLimits& limits) {
   DecodedRecords out;
-  CURLIDAR_TRY_ASSIGN(points, decode_cell_points(chunks, table, image, exact));
+  CURLIDAR_TRY_ASSIGN(points, decode_cell_points(chunks, table, image, coarse));
   out.points = std::move(points);
   if (const Chunk* chunk = find_chunk(chunks, ChunkType::loose)) {
     CURLIDAR_TRY_ASSIGN(loose, decode_loose(*chunk, limits.max_cells));
@@ -87,7 +95,8 @@ Result<DecodedRecords> decode_records(const std::vector<Chunk>& chunks,
   CURLIDAR_TRY_ASSIGN(order, decode_order(order_chunk, cells.grid(out.loose), limits.max_cells));
   out.order = std::move(order);
   round_to(out.order.type, out.points);
-  if (const Chunk* chunk = find_chunk(chunks, ChunkType::corrections); chunk != nullptr && exact) {
+  if (const Chunk* chunk = find_chunk(chunks, ChunkType::corrections);
+      chunk != nullptr && coarse == nullptr) {
     CURLIDAR_TRY(apply_corrections(*chunk, out.order.type, out.points));
   }
   if (const Chunk* chunk = find_chunk(chunks, ChunkType::records)) {
@@ -137,8 +146,11 @@ std::vector<Attribute> attributes_of_records(const DecodedRecords& records) {
 
 std::vector<std::byte> write_promise(const RecordPromise& promise) {
   ByteWriter writer;
-  writer.write(promise.bit_exact ? kPromisesBits : kPromisesBound);
-  if (!promise.bit_exact) writer.write(promise.bound_m);
+  const bool bound = !promise.bit_exact && promise.bound_m > 0;
+  const int flags = (bound ? kPromisesBound : 0) | (promise.bit_exact ? kPromisesBits : 0) |
+                    (promise.any_order ? kAnyOrder : 0);
+  writer.write(static_cast<std::uint8_t>(flags));
+  if (bound) writer.write(promise.bound_m);
   return std::move(writer).bytes();
 }
 
@@ -147,16 +159,21 @@ Result<RecordPromise> read_promise(const std::vector<Chunk>& chunks) {
   const Chunk* chunk = find_chunk(chunks, ChunkType::promise);
   if (chunk == nullptr) return promise;
   PayloadReader reader(*chunk);
-  const auto kind = reader.read<std::uint8_t>();
-  if (kind == kPromisesBits) {
-    promise.bit_exact = true;
-  } else if (kind == kPromisesBound) {
+  const auto flags = reader.read<std::uint8_t>();
+  if (flags > (kPromisesBound | kPromisesBits | kAnyOrder)) {
+    return Error{ErrorCode::unsupported, "the file promises what only a newer curlidar knows"};
+  }
+  constexpr int kBoth = kPromisesBound | kPromisesBits;
+  if (flags == 0 || (flags & kBoth) == kBoth) {
+    return reader.corrupt("no promise, or two of the coordinates");
+  }
+  promise.bit_exact = (flags & kPromisesBits) != 0;
+  promise.any_order = (flags & kAnyOrder) != 0;
+  if ((flags & kPromisesBound) != 0) {
     promise.bound_m = reader.read<double>();
     if (!(promise.bound_m > 0) || !std::isfinite(promise.bound_m)) {
       return reader.corrupt("a bound that is no length");
     }
-  } else {
-    return reader.corrupt("an unknown kind of promise");
   }
   CURLIDAR_TRY(reader.finish());
   return promise;

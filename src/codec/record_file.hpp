@@ -49,17 +49,19 @@ struct DecodedRecords {
   std::vector<Attribute> attributes;  ///< of every slot
 };
 
-/// `image` may have no rows. Without `exact` corrections are left out: they make no sense on ranges
-/// without residuals. Errors: as the chunks' readers.
+/// `image` may have no rows; it is what directions and attributes were coded with. With `coarse`
+/// the points of cells are those of its ranges instead, and corrections are left out: they make no
+/// sense there. Errors: as the chunks' readers.
 Result<DecodedRecords> decode_records(const std::vector<Chunk>& chunks,
                                       const compact::RowTable& table, const compact::Image& image,
-                                      bool exact, const DecodeLimits& limits);
+                                      const compact::Image* coarse, const DecodeLimits& limits);
 
-/// The points of the cells with the offsets of their directions, if there are any; without `exact`
-/// in the middles of the cells: offsets are coded in terms of the exact ranges of all cells.
+/// The points of the cells with the offsets of their directions, if there are any; those of
+/// `coarse`'s ranges if it is given.
 Result<std::vector<Vec3>> decode_cell_points(const std::vector<Chunk>& chunks,
                                              const compact::RowTable& table,
-                                             const compact::Image& image, bool exact);
+                                             const compact::Image& image,
+                                             const compact::Image* coarse);
 
 /// Every record in its slot.
 Cloud assemble_cloud(const DecodedRecords& records);

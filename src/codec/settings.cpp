@@ -100,7 +100,9 @@ Status validate(const CompactSettings& s) {
   }
   if (!keeps_every_return(s) &&
       (s.target == CompactTarget::max_error || s.target == CompactTarget::lossless)) {
-    return invalid("only files with every return hold a bound: leave columns and limits of range");
+    return invalid(
+        "a bound, and coordinates bit for bit, are for files with every return: leave columns and "
+        "limits of range out (--cols, --min-range, --max-range)");
   }
   if (s.target == CompactTarget::lossless) return {};
   const bool metres = s.target != CompactTarget::bits_per_point;

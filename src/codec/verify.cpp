@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "curlidar/verify.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <string>
+#include <utility>
 
 #include "base/try.hpp"
+#include "cloud/neighbours.hpp"
+#include "codec/verify_slots.hpp"
 
 namespace curlidar {
 namespace {
@@ -83,10 +85,110 @@ void compare_attributes(const Cloud& back, const Cloud& cloud, Verification& out
   }
 }
 
-}  // namespace
+/// The returns alone, with the attributes that `names` has.
+Cloud returns_of(const Cloud& cloud, const std::vector<Attribute>& names) {
+  std::vector<std::uint32_t> slots;
+  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
+    if (is_return(cloud.positions[i])) slots.push_back(i);
+  }
+  Cloud chosen;
+  chosen.positions = cloud.positions;
+  for (const Attribute& attribute : names) {
+    if (const Attribute* found = cloud.find(attribute.name)) chosen.attributes.push_back(*found);
+  }
+  return select(chosen, slots);
+}
 
-Result<Verification> verify(std::span<const std::byte> bytes, const Cloud& cloud,
-                            std::size_t threads) {
+/// Of every point the bytes of its coordinates, if wanted, and attributes; sorted.
+std::vector<std::string> sorted_points(const Cloud& cloud, bool positions, bool attributes) {
+  std::vector<std::string> points(cloud.size());
+  const auto append = [&](std::size_t i, const void* bytes, std::size_t size) {
+    points[i].append(static_cast<const char*>(bytes), size);
+  };
+  for (std::size_t i = 0; positions && i < cloud.size(); ++i) {
+    append(i, &cloud.positions[i], sizeof(Vec3));
+  }
+  for (const Attribute& attribute : cloud.attributes) {
+    if (!attributes) break;
+    std::visit(
+        [&](const auto& values) {
+          for (std::size_t i = 0; i < cloud.size(); ++i) {
+            append(i, &values[i * attribute.components], attribute.components * sizeof(values[0]));
+          }
+        },
+        attribute.values);
+  }
+  std::sort(points.begin(), points.end());
+  return points;
+}
+
+bool same_attribute_types(const Cloud& a, const Cloud& b) {
+  const auto same = [](const Attribute& x, const Attribute& y) {
+    return x.components == y.components && x.values.index() == y.values.index();
+  };
+  return std::equal(a.attributes.begin(), a.attributes.end(), b.attributes.begin(),
+                    b.attributes.end(), same);
+}
+
+/// Distances to the nearest, both ways; those of both clouds have returns.
+Status measure_nearest(const Cloud& back, const Cloud& cloud, std::size_t threads,
+                       Verification& out) {
+  CURLIDAR_TRY_ASSIGN(there, distances_to_nearest(cloud, back, threads));
+  CURLIDAR_TRY_ASSIGN(here, distances_to_nearest(back, cloud, threads));
+  double sum = 0, squares = 0;
+  for (const double distance : there) {
+    sum += distance;
+    squares += distance * distance;
+    out.max_error_m = std::max(out.max_error_m, distance);
+  }
+  for (const double distance : here) out.max_error_m = std::max(out.max_error_m, distance);
+  const auto n = static_cast<double>(there.size());
+  out.mean_error_m = sum / n;
+  out.rms_error_m = std::sqrt(squares / n);
+  return {};
+}
+
+/// Compares the returns of both clouds as sets.
+Status compare_sets(const Cloud& decoded, const Cloud& original, std::size_t threads,
+                    Verification& out) {
+  const Cloud back = returns_of(decoded, decoded.attributes);
+  const Cloud cloud = returns_of(original, decoded.attributes);
+  out.points = cloud.size();
+  for (const Attribute& attribute : original.attributes) {
+    if (back.find(attribute.name) == nullptr) out.attributes_left_out.push_back(attribute.name);
+  }
+  if (!cloud.positions.empty() && !back.positions.empty()) {
+    CURLIDAR_TRY(measure_nearest(back, cloud, threads, out));
+  }
+  if (back.size() != cloud.size()) {
+    out.failures.push_back(
+        fmt::format("the file has {} returns, the cloud {}", back.size(), cloud.size()));
+    return {};
+  }
+  const auto same = [&](bool positions, bool attributes) {
+    return sorted_points(back, positions, attributes) ==
+           sorted_points(cloud, positions, attributes);
+  };
+  out.bit_exact = same(true, false);
+  out.attributes = same_attribute_types(back, cloud) && same(out.bit_exact, true);
+  if (!out.attributes) out.failures.push_back("the attributes are not the cloud's");
+  return {};
+}
+
+void check_promise(Verification& v) {
+  if (v.promise.bit_exact && !v.bit_exact) {
+    v.failures.push_back(
+        fmt::format("coordinates are not bit for bit the cloud's; the largest distance is {} m",
+                    v.max_error_m));
+  }
+  if (v.promise.bound_m > 0 && !(v.max_error_m <= v.promise.bound_m)) {
+    v.failures.push_back(fmt::format("a point lies {} m from its original, the bound is {} m",
+                                     v.max_error_m, v.promise.bound_m));
+  }
+  v.ok = v.failures.empty();
+}
+
+Result<DecodedScan> decode_all(ByteSpan bytes, std::size_t threads) {
   DecodeOptions options;
   options.threads = threads;
   options.limits = {UINT64_MAX, UINT64_MAX};
@@ -96,6 +198,10 @@ Result<Verification> verify(std::span<const std::byte> bytes, const Cloud& cloud
                  "the file does not hold every return in its place (it is of the paper's profiles "
                  "or an image): encode the scan without --cols and limits of range"};
   }
+  return scan;
+}
+
+Verification compare_slots(const DecodedScan& scan, const Cloud& cloud) {
   Verification out;
   out.promise = scan.records->promise;
   compare_points(*scan.cloud, cloud, out);
@@ -106,16 +212,24 @@ Result<Verification> verify(std::span<const std::byte> bytes, const Cloud& cloud
                                        scan.cloud->width, scan.cloud->height, cloud.width,
                                        cloud.height));
   }
-  if (out.promise.bit_exact && !out.bit_exact) {
-    out.failures.push_back(
-        fmt::format("coordinates are not bit for bit the cloud's; the largest distance is {} m",
-                    out.max_error_m));
-  }
-  if (out.promise.bound_m > 0 && !(out.max_error_m <= out.promise.bound_m)) {
-    out.failures.push_back(fmt::format("a point lies {} m from its original, the bound is {} m",
-                                       out.max_error_m, out.promise.bound_m));
-  }
-  out.ok = out.failures.empty();
+  check_promise(out);
+  return out;
+}
+
+}  // namespace
+
+Result<Verification> verify_slots(ByteSpan bytes, const Cloud& cloud, std::size_t threads) {
+  CURLIDAR_TRY_ASSIGN(scan, decode_all(bytes, threads));
+  return compare_slots(scan, cloud);
+}
+
+Result<Verification> verify(ByteSpan bytes, const Cloud& cloud, std::size_t threads) {
+  CURLIDAR_TRY_ASSIGN(scan, decode_all(bytes, threads));
+  if (!scan.records->promise.any_order) return compare_slots(scan, cloud);
+  Verification out;
+  out.promise = scan.records->promise;
+  CURLIDAR_TRY(compare_sets(*scan.cloud, cloud, threads, out));
+  check_promise(out);
   return out;
 }
 

@@ -112,6 +112,13 @@ Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& se
                  fmt::format("the factors {} x {} are not above 0 and at most 4096", settings.rows,
                              settings.columns)};
   }
+  const bool plain = settings.rows == 1 && settings.columns == 1 && settings.masks;
+  if (scan.records && scan.records->lattice == RecordLattice::none &&
+      !(plain && !settings.organised)) {
+    return Error{ErrorCode::invalid_argument,
+                 "the file holds its points one after the other, without a field: it gives them as "
+                 "they are, without other rows, columns or a grid"};
+  }
   const Field& field = *scan.field;
   const DenseGrid grid(field.lattice(), settings.rows, settings.columns);
   if (grid.columns > settings.max_points || grid.rows > settings.max_points / grid.columns) {
@@ -119,7 +126,7 @@ Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& se
                  fmt::format("a grid of {} x {} has more than the {} points allowed", grid.rows,
                              grid.columns, settings.max_points)};
   }
-  if (settings.rows == 1 && settings.columns == 1 && settings.masks) {
+  if (plain) {
     if (scan.cloud && !settings.organised) return *scan.cloud;
     if (!scan.points.empty()) return coded_cloud(scan, settings.organised);
   }

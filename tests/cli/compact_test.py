@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The compact profile: targets, decoding in part, cut files, pictures of the partition."""
+"""The compact profile: targets, every return, decoding in part, cut files, pictures."""
 
 import json
+import random
 import unittest
 
-from support import INPUT, OK, USAGE, CommandTest, png_size
+from support import INPUT, OK, USAGE, CommandTest, png_size, write_kitti
 
 
 class CompactTest(CommandTest):
@@ -34,7 +35,8 @@ class CompactTest(CommandTest):
         bits = sum(report["breakdown"].values())
         self.assertAlmostEqual(bits, 8 * report["bytes"], 2)
         self.assertEqual(set(report["breakdown"]), {"header", "mask", "partition", "modes",
-                                                    "coefficients", "labels", "residual"})
+                                                    "coefficients", "labels", "residual",
+                                                    "records"})
 
     def test_other_targets(self):
         near = self.encode("--error-nn", 0.03)
@@ -47,6 +49,84 @@ class CompactTest(CommandTest):
         self.assertLessEqual(bits["bits_per_point_coded"], 3)
         self.assertGreaterEqual(bits["bits_per_point_coded"], 0.97 * 3)
         self.assertEqual(self.encode("--step", 0.25)["step_m"], 0.25)
+
+    def test_depth_images_are_asked_for(self):
+        image = self.run_json("encode", "scan.pcd", "--cols", 512, "-o", "image.curl",
+                              "--attributes", "none", "--effort", 1)
+        self.assertNotIn("records", image)
+        self.assertEqual(image["points_coded"] + image["dropped"]["collided"], image["points_in"])
+        self.assertGreater(image["dropped"]["collided"], 0)
+        info = self.run_json("info", "image.curl")
+        self.assertFalse(info["every_return"])
+        self.assertNotIn("records", info)
+        near = self.run_json("encode", "scan.pcd", "--max-range", 20, "-o", "near.curl",
+                             "--effort", 1)
+        self.assertGreater(near["dropped"]["out_of_range"], 0)
+        self.assertEqual(near["points_coded"],
+                         near["points_in"] - sum(near["dropped"].values()))
+        text = self.run_ok("encode", "scan.pcd", "--cols", 512, "-o", "image.curl").decode()
+        self.assertIn("not coded one for one", text)
+
+    def test_every_return_and_what_was_found(self):
+        self.simulate("rays.pcd", "--range-unit", 0.002)
+        report = self.run_json("encode", "rays.pcd", "--max-error", 0.02, "-o", "all.curl")
+        self.assertEqual(report["points_coded"], report["points_in"])
+        self.assertEqual(sum(report["dropped"].values()), 0)
+        self.assertLessEqual(report["max_error_m"], 0.02)
+        records = report["records"]
+        self.assertEqual((records["bound_m"], records["bit_exact"]), (0.02, False))
+        self.assertEqual(records["lattice"], "rays")
+        self.assertEqual(records["slots"], 1808)
+        self.assertEqual(records["share_on_lattice"], 1)
+        self.assertLess(records["residual_mm"]["across"], 0.1)
+        info = self.run_json("info", "all.curl")
+        self.assertTrue(info["every_return"])
+        for key in ["lattice", "table", "firings", "slots", "loose", "bound_m", "bit_exact",
+                    "any_order"]:
+            self.assertEqual(info["records"][key], records[key], key)
+        scan = self.run_json("info", "rays.pcd")
+        self.assertEqual(info["records"]["cloud_slots"], scan["slots"])
+        self.assertEqual(info["records"]["coordinates"], "float32")
+        self.assertIsNone(info["records"]["motion"])
+        chunks = {c["name"]: c["bytes"] for c in info["chunks"]}
+        for name in ["compact_rays", "order", "records", "promise"]:
+            self.assertIn(name, chunks)
+        parts = records["bytes"]
+        self.assertLessEqual(chunks["order"], parts["order"])  # which counts its frame, too
+        self.assertLessEqual(chunks["records"], parts["attributes"])
+        text = self.run_ok("encode", "rays.pcd", "--max-error", 0.02, "-o", "all.curl").decode()
+        for word in ["every point within 20.0 mm", "100.00 %", "1,808 positions", "calibrat",
+                     "order", "attributes", "corrected"]:
+            self.assertIn(word, text)
+        self.assertNotIn("not coded one for one", text)
+        text = self.run_ok("info", "all.curl").decode()
+        for word in ["every one of the scan", "every point within 20.0 mm", "1,808 positions"]:
+            self.assertIn(word, text)
+
+    def test_points_without_rings(self):
+        uniform = random.Random(5)
+        write_kitti(self.path("noise.bin"),
+                    [[uniform.uniform(-20, 20) for _ in range(3)] + [0] for _ in range(500)])
+        report = self.run_json("encode", "noise.bin", "--max-error", 0.01)
+        self.assertEqual(report["records"]["lattice"], "none")
+        self.assertIn("No rings", report["records"]["notes"][0])
+        info = self.run_json("info", "noise.curl")
+        self.assertEqual((info["rings"], info["rows"], info["columns"]), (0, 0, 0))
+        self.assertEqual(info["records"]["loose"], 500)
+        self.assertEqual(self.run_json("decode", "noise.curl", "-o", "back.bin")["points"], 500)
+        for text in [self.run_ok("encode", "noise.bin", "--max-error", 0.01),
+                     self.run_ok("info", "noise.curl")]:
+            self.assertIn(b"points one after the other", text)
+        # There is no field to be seen from elsewhere, nor rings to choose.
+        for arguments in [["--rows", 2], ["--cols", 0.5], ["--organised"], ["--no-masks"]]:
+            self.run_fail(INPUT, "decode", "noise.curl", *arguments, "-o", "no.pcd",
+                          says=["noise.curl", "without a field"])
+        self.run_fail(INPUT, "decode", "noise.curl", "--rings", "0:4", "-o", "no.pcd", says="rings")
+        data = self.path("noise.curl").read_bytes()
+        self.path("cut.curl").write_bytes(data[:len(data) // 2])
+        self.run_fail(INPUT, "decode", "cut.curl", "--allow-truncated", "-o", "no.pcd",
+                      says="cut off")
+        self.assertFalse(self.path("no.pcd").exists())
 
     def test_effort_and_index(self):
         fast = self.run_json("encode", "grid.pcd", "-o", "fast.curl", "--attributes", "none",
@@ -130,6 +210,48 @@ class CompactTest(CommandTest):
         self.run_ok("encode", "scan.pcd", "--profile", "paper", "-o", "paper.curl")
         self.run_fail(INPUT, "decode", "paper.curl", "--rings", "0:4", "-o", "no.pcd",
                       says="compact")
+
+    def test_parts_of_every_return(self):
+        self.run_ok("encode", "scan.pcd", "--max-error", 0.01, "--effort", 1, "-o", "all.curl")
+        points = {}
+        for name, arguments in [("whole", []), ("coarse", ["--field-only"]),
+                                ("upper", ["--rings", "0:8"]), ("lower", ["--rings", "8:16"]),
+                                ("dense", ["--rows", 4])]:
+            report = self.run_json("decode", "all.curl", *arguments, "-o", f"{name}.pcd")
+            points[name] = report["points"]
+        loose = self.run_json("info", "all.curl")["records"]["loose"]
+        self.assertEqual(points["upper"] + points["lower"], points["whole"] - loose)
+        self.assertEqual(points["coarse"], points["whole"])
+        self.assertGreater(points["dense"], 2 * points["whole"])
+        # The field alone is coarser, but each of its points has its own attributes.
+        distances = [self.run_json("compare", f"{name}.pcd", "scan.pcd")["a_to_b"]["mean"]
+                     for name in ["whole", "coarse"]]
+        self.assertLess(distances[0], 0.01)
+        self.assertGreater(distances[1], 2 * distances[0])
+        for name in ["scan", "coarse"]:
+            self.run_ok("convert", f"{name}.pcd", f"{name}.npy")
+            self.run_ok("convert", f"{name}.pcd", f"{name}.csv")
+        values = [[line.split(",")[3:] for line in self.path(f"{name}.csv").read_text().split()]
+                  for name in ["scan", "coarse"]]
+        self.assertEqual(*values)
+
+    def test_cut_files_with_every_return(self):
+        self.run_ok("encode", "scan.pcd", "--max-error", 0.01, "--effort", 1, "-o", "all.curl")
+        data = self.path("all.curl").read_bytes()
+        offsets = {c["name"]: c["offset"] for c in self.run_json("info", "all.curl")["chunks"]}
+        for chunk, share in [("compact_residual", 0.1), ("order", 0.9), ("records", 1)]:
+            with self.subTest(chunk=chunk):
+                self.path("cut.curl").write_bytes(data[:offsets[chunk] + 5])
+                self.run_fail(INPUT, "decode", "cut.curl", "-o", "no.pcd", says="--allow-truncated")
+                result = self.execute("decode", "cut.curl", "--allow-truncated", "-o", "cut.pcd",
+                                      "--json")
+                self.assertEqual(result.returncode, OK, result.stderr)
+                self.assertEqual(result.stderr.count(b"\n"), 1)
+                report = json.loads(result.stdout)
+                self.assertGreater(len(report["missing"]), 0)
+                whole = self.run_json("info", "scan.pcd")["returns"]
+                self.assertGreaterEqual(report["points"], share * whole)
+        self.assertFalse(self.path("no.pcd").exists())
 
     def test_cut_files(self):
         self.encode("--error", 0.01)

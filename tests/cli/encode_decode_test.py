@@ -54,9 +54,12 @@ class EveryProfile:
 
     def test_organised_and_without_masks(self):
         self.run_ok("decode", "scan.curl", "--organised", "-o", "grid.pcd")
-        info = self.run_json("info", "grid.pcd")
+        info, coded = self.run_json("info", "grid.pcd"), self.run_json("info", "scan.curl")
         self.assertTrue(info["organised"])
-        self.assertEqual((info["height"], info["width"]), (16, self.columns))
+        self.assertEqual((info["height"], info["width"]), (coded["rows"], coded["columns"]))
+        self.assertEqual(info["height"], 16)
+        if self.columns is not None:
+            self.assertEqual(info["width"], self.columns)
         masked = self.run_json("decode", "scan.curl", "-o", "masked.pcd")["points"]
         full = self.run_json("decode", "scan.curl", "--no-masks", "-o", "full.pcd")["points"]
         self.assertGreater(full, masked)
@@ -122,7 +125,7 @@ class EveryProfile:
 
     def test_the_text_report(self):
         text = self.run_ok("encode", "scan.pcd", *self.profile, "-o", "text.curl").decode()
-        for word in ["points in", "points coded", "bits per point", "out of range", "total"]:
+        for word in ["points in", "points coded", "bits per point", "total", *self.words]:
             self.assertIn(word, text)
         quiet = self.run_ok("encode", "scan.pcd", *self.profile, "-o", "text.curl", "--quiet")
         self.assertEqual(quiet, b"")
@@ -131,6 +134,7 @@ class EveryProfile:
 class PaperProfileTest(EveryProfile, CommandTest):
     profile = ["--profile", "paper"]
     columns = 1024
+    words = ["patches", "not coded one for one", "out of range"]
 
     def test_report_of_the_fit(self):
         self.assertGreater(self.report["cp_paper_percent"], 0)
@@ -163,7 +167,18 @@ class PaperProfileTest(EveryProfile, CommandTest):
 
 class CompactProfileTest(EveryProfile, CommandTest):
     profile = ["--effort", 1]
-    columns = 2048
+    columns = None  # as many as the scan has firings
+    words = ["Every return:", "Parts of the file:", "order", "attributes"]
+
+    def test_nothing_is_dropped(self):
+        self.assertEqual(self.report["points_coded"], self.report["points_in"])
+        self.assertEqual(sum(self.report["dropped"].values()), 0)
+
+
+class DepthImageTest(EveryProfile, CommandTest):
+    profile = ["--effort", 1, "--cols", 1024]
+    columns = 1024
+    words = ["residual", "not coded one for one", "share a cell"]
 
 
 class ManyInputsTest(CommandTest):
@@ -267,13 +282,24 @@ class DegenerateScanTest(CommandTest):
                     if result.returncode != 0:
                         self.assertEqual(result.returncode, INPUT, result.stderr)
                         self.assertIn(b"few.bin", result.stderr)
+                    elif profile == "compact":
+                        self.run_ok("verify", "few.curl", "few.bin")
+                        self.run_ok("decode", "few.curl")
                     else:
                         self.assertGreater(len(points), 0)
                         self.run_ok("decode", "few.curl")
 
-    def test_a_scan_without_returns_is_refused(self):
-        self.assertEqual(self.encode([]).returncode, INPUT)
-        self.assertEqual(self.encode([(0, 0, 0, 0)]).returncode, INPUT)
+    def test_a_scan_without_returns_keeps_its_slots(self):
+        for points in [[], [(0, 0, 0, 0)], [(0, 0, 0, 0.5), (float("nan"),) * 4]]:
+            with self.subTest(points=points):
+                self.assertEqual(self.encode(points).returncode, 0)
+                self.assertTrue(self.run_json("verify", "few.curl", "few.bin")["ok"])
+                self.run_ok("decode", "few.curl", "-o", "back.bin")
+                self.assertEqual(len(read_kitti(self.path("back.bin"))), len(points))
+
+    def test_a_depth_image_without_returns_is_refused(self):
+        for points in [[], [(0, 0, 0, 0)]]:
+            self.assertEqual(self.encode(points, "--cols", 512).returncode, INPUT)
 
 
 if __name__ == "__main__":

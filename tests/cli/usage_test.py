@@ -7,7 +7,7 @@ import unittest
 from support import FILE, INPUT, USAGE, CommandTest
 
 COMMANDS = ["encode", "decode", "mesh", "upsample", "convert", "info", "project", "compare",
-            "simulate", "render", "sensors", "calibrate", "demo"]
+            "verify", "simulate", "render", "sensors", "calibrate", "demo"]
 
 
 class UsageTest(CommandTest):
@@ -81,6 +81,17 @@ class UsageTest(CommandTest):
                           ["convert", "a.pcd"],
                           ["convert", "a.pcd", "a.curl"],
                           ["convert", "a.pcd", "a.pcd"],
+                          ["encode", "a.pcd", "--max-error", "0"],
+                          ["encode", "a.pcd", "--max-error", "nan"],
+                          ["encode", "a.pcd", "--max-error", "0.1", "--error", "0.1"],
+                          ["encode", "a.pcd", "--max-error", "0.1", "--lossless"],
+                          ["encode", "a.pcd", "--lossless", "--cols", "512"],
+                          ["encode", "a.pcd", "--max-error", "0.1", "--min-range", "1"],
+                          ["encode", "a.pcd", "--any-order", "--cols", "512"],
+                          ["encode", "a.pcd", "--lossless", "--profile", "paper"],
+                          ["encode", "a.pcd", "--any-order", "--profile", "paper"],
+                          ["verify", "a.curl"],
+                          ["verify", "-", "-"],
                           ["compare", "a.pcd"],
                           ["compare", "-", "-"],
                           ["simulate", "--scene", "moon"],
@@ -99,6 +110,7 @@ class UsageTest(CommandTest):
         for arguments in [["encode", "nowhere.pcd"], ["decode", "nowhere.pcd"],
                           ["info", "nowhere.pcd"], ["render", "nowhere.pcd"],
                           ["compare", "nowhere.pcd", "nowhere.pcd"],
+                          ["verify", "nowhere.pcd", "nowhere.pcd"],
                           ["project", "nowhere.pcd"], ["mesh", "nowhere.pcd"],
                           ["upsample", "nowhere.pcd"], ["convert", "nowhere.pcd", "b.ply"]]:
             with self.subTest(arguments=arguments):

@@ -3,7 +3,7 @@
 import struct
 
 from attributes import Attributes
-from container import Corrupt, read_chunks
+from container import Corrupt, Unsupported, read_chunks
 from corrections import apply_corrections
 from directions import decode_directions
 from loose import decode_loose
@@ -18,13 +18,14 @@ QUIET_NAN = struct.unpack("<d", struct.pack("<Q", 0x7FF8 << 48))[0]
 class CloudFile:
     """Decodes on construction. slots: x, y, z of each; order: width, height, type, kinds;
     attributes: as in the module of that name; bound: metres, 0 for bit for bit, None for nothing
-    promised."""
+    promised of points; any_order: whether the order was given up."""
 
     def __init__(self, data):
         self.chunks = {chunk.kind: chunk.payload for chunk in read_chunks(data)}
         if ORDER not in self.chunks:
             raise Corrupt("no order")
         self.scan = Scan(data) if PARAMETERS in self.chunks else None
+        self.any_order = False
         self.bound = self._promise()
         cells = self._cell_points()
         loose = decode_loose(self.chunks[LOOSE]) if LOOSE in self.chunks else []
@@ -44,10 +45,14 @@ class CloudFile:
         if PROMISE not in self.chunks:
             return None
         payload = self.chunks[PROMISE]
-        if payload == b"\x02":
-            return 0
-        if len(payload) != 9 or payload[0] != 1:
+        flags = payload[0] if payload else 0
+        if flags > 7:
+            raise Unsupported("a promise of a later version")
+        if flags == 0 or flags & 3 == 3 or len(payload) != (9 if flags & 1 else 1):
             raise Corrupt("a promise of an unknown kind")
+        self.any_order = bool(flags & 4)
+        if not flags & 1:
+            return 0 if flags & 2 else None
         (bound,) = struct.unpack("<d", payload[1:])
         if not 0 < bound < float("inf"):
             raise Corrupt("a bound that is no length")
