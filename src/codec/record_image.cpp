@@ -85,7 +85,7 @@ Result<CompactTrial> encode_bounded(CompactJob& job) {
   }
   compact::Steps coarse;
   coarse.residual_step = residual;
-  coarse.step = units(0.3);
+  coarse.step = compact::kCoarseStep;
   if (coarse.step > 2 * residual) steps.push_back(coarse);
   return best_of(job, steps);
 }
@@ -94,7 +94,7 @@ Result<CompactTrial> encode_bounded(CompactJob& job) {
 Result<CompactTrial> encode_exactly(CompactJob& job, std::uint64_t range_unit_q48,
                                     CompactModel& model) {
   compact::Steps steps;
-  steps.step = units(0.3);
+  steps.step = compact::kCoarseStep;
   job.max_error = 1;
   if (range_unit_q48 > 0) {
     steps.lattice_q32 = (range_unit_q48 + (1 << 15)) >> 16;

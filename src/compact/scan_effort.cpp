@@ -27,7 +27,6 @@ constexpr std::array<EffortRow, kMostEffort> kEfforts = {{
     {4, 3, 5, 2, 3, 32},
 }};
 
-constexpr std::int32_t kCoarseStep = 3 * kRangeUnit / 10;
 constexpr std::int64_t kCoarseRatio = 4;
 /// From this step on hardly a leaf wants residuals.
 constexpr std::int32_t kFieldAloneStep = 42 * kRangeUnit / 100;
