@@ -225,6 +225,15 @@ class TargetSearch {
   std::uint32_t encodings_ = 0;
 };
 
+/// The usual steps for the target times exp(`log_scale`).
+compact::Steps scaled_steps(const CompactJob& job, double log_scale) {
+  const double error_m = first_error_guess(job.settings);
+  const bool bits = job.settings.target == CompactTarget::bits_per_point;
+  const auto scale = std::max<std::int64_t>(1, std::llround(65536 * std::exp(log_scale)));
+  return compact::steps_for_error(to_units(bits ? error_m : range_share(job, error_m)), scale,
+                                  job.kind);
+}
+
 /// The chunk of the model's offsets for ranges as decoded.
 std::vector<std::byte> encode_offsets(const CompactModel& model, const compact::Image& decoded) {
   std::vector<std::uint8_t> occupied;
@@ -275,12 +284,8 @@ Result<CompactTrial> try_steps(const CompactJob& job, const compact::Steps& step
 }
 
 compact::Steps usual_steps(const CompactJob& job) {
-  const double error_m = first_error_guess(job.settings);
   if (job.settings.target == CompactTarget::step) return steps_of_step(job.settings.target_value);
-  return compact::steps_for_error(
-      to_units(job.settings.target == CompactTarget::bits_per_point ? error_m
-                                                                    : range_share(job, error_m)),
-      65536, job.kind);
+  return scaled_steps(job, 0);
 }
 
 Status choose_kind(CompactJob& job) {
@@ -291,14 +296,19 @@ Status choose_kind(CompactJob& job) {
   }
   std::optional<CompactTrial> best;
   compact::FieldKind best_kind = job.kind;
+  double best_start = 0;
   for (const compact::FieldKind kind : {compact::FieldKind::close, compact::FieldKind::coarse}) {
     job.kind = kind;
-    CURLIDAR_TRY_ASSIGN(trial, try_steps(job, usual_steps(job), compact::kDefaultEffort));
+    CURLIDAR_TRY_ASSIGN(first, try_steps(job, usual_steps(job), compact::kDefaultEffort));
+    // Which kind is the better one changes quickly with the error: compare near the wanted one.
+    const double at = start_after(first, job.settings, compact::kDefaultEffort);
+    CURLIDAR_TRY_ASSIGN(trial, try_steps(job, scaled_steps(job, at), compact::kDefaultEffort));
     if (best && !is_cheaper(trial, *best)) continue;
     best_kind = kind;
-    job.start = start_after(trial, job.settings, compact::kDefaultEffort);
+    best_start = at + start_after(trial, job.settings, compact::kDefaultEffort);
     best = std::move(trial);
   }
+  job.start = best_start;
   job.kind = best_kind;
   return {};
 }
