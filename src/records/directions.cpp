@@ -123,9 +123,9 @@ class OffsetCoder {
 
   /// Of any number of steps, within a turn.
   static std::int64_t angle(std::int64_t base, std::int64_t rest, std::int64_t step) {
+    const std::int64_t most = kTurn / step + 1;
     const std::int64_t steps = std::clamp<std::int64_t>(rest, -kTurn, kTurn) + base;
-    return std::clamp<std::int64_t>(std::clamp<std::int64_t>(steps, -kTurn, kTurn) * step,
-                                    INT32_MIN, INT32_MAX);
+    return std::clamp<std::int64_t>(std::clamp(steps, -most, most) * step, INT32_MIN, INT32_MAX);
   }
 
   void learn(std::size_t axis, const Guesses& guesses, std::int64_t value, std::int64_t rest) {

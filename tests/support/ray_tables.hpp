@@ -39,7 +39,7 @@ inline compact::RowTable inline_rays(std::int32_t rows, std::vector<std::uint32_
   rays.height_shift = 1;
   rays.phase_shift = 2;
   for (std::int32_t row = 0; row < rows; ++row) {
-    table.elevation.push_back(((row * 7) % rows - rows / 2) * (1 << 28) / rows / 256 * 256);
+    table.elevation.push_back(((row * 7) % rows - rows / 2) * ((1 << 28) / rows / 256 * 256));
     compact::Ray& ray = rays.rays.emplace_back();
     ray.azimuth_offset = (row % 4 - 2) * 36000 * 1024;
     ray.height = row * 2 - 32;
