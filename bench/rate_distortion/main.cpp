@@ -13,26 +13,9 @@
 #include "base/try.hpp"
 #include "curlidar/compare.hpp"
 #include "curlidar/io.hpp"
-#include "peers.hpp"
+#include "peers/peers.hpp"
 
 namespace curlidar::bench {
-
-Result<Grid> make_grid(const Cloud& cloud, const std::string& name) {
-  if (!cloud.organised()) {
-    return Error{ErrorCode::invalid_argument, name + ": not organised; use curlidar project"};
-  }
-  Grid grid{{cloud.height, cloud.width, {}}, {}, {}};
-  for (const Vec3& p : cloud.positions) {
-    grid.mask.occupied.push_back(is_return(p) ? 1 : 0);
-    if (!is_return(p)) continue;
-    grid.returns.positions.push_back(p);
-    grid.ranges_m.push_back(norm(p));
-  }
-  if (grid.ranges_m.empty()) {
-    return Error{ErrorCode::invalid_argument, name + ": no cell holds a return"};
-  }
-  return grid;
-}
 
 namespace {
 
@@ -85,28 +68,6 @@ Status print_peer(const Grid& grid, const Peer& peer) {
     std::fflush(stdout);
   }
   return {};
-}
-
-/// Those whose library was not found have nothing to run.
-std::vector<Peer> all_peers() {
-  std::vector<Peer> peers{range_image_peer(png_coder()), range_image_peer(zstd_coder()),
-                          zstd_delta_peer()};
-#ifdef CURLIDAR_BENCH_HAS_JXL
-  peers.push_back(range_image_peer(jxl_coder()));
-#else
-  peers.push_back({"jpeg-xl-e9", {}, {}, {}});
-#endif
-#ifdef CURLIDAR_BENCH_HAS_DRACO
-  peers.push_back(draco_peer());
-#else
-  peers.push_back({"draco-kd-tree", {}, {}, {}});
-#endif
-#ifdef CURLIDAR_BENCH_HAS_PCL
-  peers.push_back(pcl_octree_peer());
-#else
-  peers.push_back({"pcl-octree", {}, {}, {}});
-#endif
-  return peers;
 }
 
 Status run(std::string_view what, const std::string& grid_path, const char* decoded_path) {

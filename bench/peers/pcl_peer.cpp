@@ -27,12 +27,16 @@ Result<Decoded> run(const Grid& grid, double voxel_m) {
   for (const Vec3& p : grid.returns.positions) {
     input->emplace_back(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
   }
-  std::stringstream stream;
-  make_coder(voxel_m).encodePointCloud(input, stream);
   Decoded result;
+  std::stringstream stream;
+  CpuTimer timer;
+  make_coder(voxel_m).encodePointCloud(input, stream);
+  result.encode_ms = timer.lap_ms();
   result.bytes = stream.str().size();
   PclCloud::Ptr output(new PclCloud);
+  timer.lap_ms();
   make_coder(voxel_m).decodePointCloud(stream, output);
+  result.decode_ms = timer.lap_ms();
   for (const pcl::PointXYZ& p : *output) result.cloud.positions.push_back({p.x, p.y, p.z});
   return result;
 }

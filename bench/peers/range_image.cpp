@@ -47,17 +47,19 @@ void fill_holes(const Mask& mask, Samples& image) {
 }
 
 Result<Decoded> run(const ImageCoder& coder, const Grid& grid, double step_m) {
+  Decoded result;
+  CpuTimer timer;
   CURLIDAR_TRY_ASSIGN(image, quantise(grid, step_m));
   fill_holes(grid.mask, image);
   CURLIDAR_TRY_ASSIGN(packed, coder.pack(image, grid.mask));
   const Bytes packed_mask = pack_mask(grid.mask);
+  result.encode_ms = timer.lap_ms();
 
   const Mask mask = unpack_mask(packed_mask, grid.mask.rows, grid.mask.columns);
   CURLIDAR_TRY_ASSIGN(decoded, coder.unpack(packed, mask));
   if (mask.occupied != grid.mask.occupied) {
     return Error{ErrorCode::corrupt, "the mask coder changed the mask"};
   }
-  Decoded result;
   result.bytes = packed.size() + packed_mask.size();
   result.order = Order::ranges;
   for (std::size_t i = 0; i < decoded.size(); ++i) {
@@ -69,6 +71,7 @@ Result<Decoded> run(const ImageCoder& coder, const Grid& grid, double step_m) {
     const Vec3 direction = grid.returns.positions[k] * (1 / grid.ranges_m[k]);
     result.cloud.positions.push_back(direction * (decoded[i] * step_m));
   }
+  result.decode_ms = timer.lap_ms();
   return result;
 }
 

@@ -80,6 +80,8 @@ constexpr std::size_t kWidth = 3;
 /// One axis after the other, each a stream of its own planes.
 Result<Decoded> run_deltas(const Grid& grid, double step_m) {
   const std::vector<Vec3>& points = grid.returns.positions;
+  Decoded result;
+  CpuTimer timer;
   const Planes planes(3 * points.size(), kWidth);
   std::vector<std::int32_t> values;
   for (double Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
@@ -94,10 +96,10 @@ Result<Decoded> run_deltas(const Grid& grid, double step_m) {
   }
   const Bytes raw = planes.split(values);
   CURLIDAR_TRY_ASSIGN(packed, compress(raw));
+  result.encode_ms = timer.lap_ms();
   CURLIDAR_TRY_ASSIGN(unpacked, decompress(packed, raw.size()));
   const std::vector<std::int32_t> decoded = planes.join(unpacked);
 
-  Decoded result;
   result.bytes = packed.size();
   result.order = Order::points;
   const std::size_t n = points.size();
@@ -105,6 +107,7 @@ Result<Decoded> run_deltas(const Grid& grid, double step_m) {
     result.cloud.positions.push_back(
         Vec3{double(decoded[i]), double(decoded[n + i]), double(decoded[2 * n + i])} * step_m);
   }
+  result.decode_ms = timer.lap_ms();
   return result;
 }
 

@@ -32,17 +32,20 @@ Result<Decoded> run(const Grid& grid, double bits) {
   encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, static_cast<int>(bits));
   draco::EncoderBuffer packed;
   const auto cloud = draco_cloud(grid.returns.positions);
+  Decoded result;
+  CpuTimer timer;
   const draco::Status status = encoder.EncodePointCloudToBuffer(*cloud, &packed);
   if (!status.ok()) return Error{ErrorCode::corrupt, status.error_msg_string()};
+  result.encode_ms = timer.lap_ms();
 
   draco::DecoderBuffer source;
   source.Init(packed.data(), packed.size());
   draco::Decoder decoder;
   auto decoded = decoder.DecodePointCloudFromBuffer(&source);
   if (!decoded.ok()) return Error{ErrorCode::corrupt, decoded.status().error_msg_string()};
+  result.decode_ms = timer.lap_ms();
   const draco::PointCloud& out = *decoded.value();
   const auto* positions = out.GetNamedAttribute(draco::GeometryAttribute::POSITION);
-  Decoded result;
   result.bytes = packed.size();
   for (draco::PointIndex i(0); i < out.num_points(); ++i) {
     std::array<float, 3> p{};

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a peer codec is to the rate-distortion program: something that takes the gridded cloud and a
-// setting, and returns the size of a real stream and what its own decoder made of it.
+// What a peer codec is to the programs that measure it: something that takes a cloud and a setting,
+// and returns the size of a real stream and what its own decoder made of it.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <ctime>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "curlidar/cloud.hpp"
@@ -39,8 +41,21 @@ enum class Order {
   unknown,  ///< reordered, or with points lost
 };
 
+/// CPU time of this process since the last lap. The codecs run on one thread.
+class CpuTimer {
+ public:
+  double lap_ms() {
+    const std::clock_t last = std::exchange(at_, std::clock());
+    return 1e3 * static_cast<double>(at_ - last) / CLOCKS_PER_SEC;
+  }
+
+ private:
+  std::clock_t at_ = std::clock();
+};
+
 struct Decoded {
-  std::size_t bytes = 0;  ///< of everything the decoder needs
+  std::size_t bytes = 0;                ///< of everything the decoder needs
+  double encode_ms = 0, decode_ms = 0;  ///< CPU, without conversions between cloud types
   Cloud cloud;
   Order order = Order::unknown;
 };
@@ -77,5 +92,8 @@ Peer zstd_delta_peer();   // zstd_peer.cpp: x, y, z in steps, differences, zstd 
 ImageCoder jxl_coder();  // jxl_peer.cpp: JPEG XL, lossless, effort 9
 Peer draco_peer();       // draco_peer.cpp: kd-tree, speed 0
 Peer pcl_octree_peer();  // pcl_peer.cpp: one point for each voxel
+
+/// All of them. Those whose library was not found when this was built have nothing to run.
+std::vector<Peer> all_peers();
 
 }  // namespace curlidar::bench
