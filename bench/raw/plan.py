@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What is measured: which scans, with which settings of the command."""
-import hashlib
+import sys
 from dataclasses import dataclass, field
 from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+from common.digest import digest  # noqa: E402
 
 SCANS = (
     "kitti_raw/curl_example/0.pcd",
@@ -85,16 +88,6 @@ def settings_of(scan, efforts=EFFORTS, modes=MODES, quick=False):
             for effort in reversed(efforts)
             for profile, chosen in ((AUTO, points), (BATCH, batch if scan.batch else []))
             for mode, e in chosen]
-
-
-def digest(*parts):
-    """A short name for what bytes, texts and files hold."""
-    whole = hashlib.sha256()
-    for part in parts:
-        data = part.read_bytes() if isinstance(part, Path) else \
-            part.encode() if isinstance(part, str) else part
-        whole.update(len(data).to_bytes(8, "little") + data)
-    return whole.hexdigest()[:16]
 
 
 def key_of(build, scan, setting):

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the report was made on and from."""
+import datetime
+import os
+import platform
+import subprocess
+from pathlib import Path
+
+
+def said_by(*command):
+    """The first line that a program prints, or an empty text."""
+    try:
+        run = subprocess.run([str(part) for part in command], capture_output=True, text=True,
+                             check=False, stdin=subprocess.DEVNULL)
+    except OSError:
+        return ""
+    return run.stdout.strip().splitlines()[0] if run.returncode == 0 and run.stdout.strip() else ""
+
+
+def cpu():
+    try:
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()
+
+
+def commit():
+    here = Path(__file__).resolve().parent
+    return said_by("git", "-C", here, "describe", "--always", "--dirty") or "not of a checkout"
+
+
+def header(context, command_line):
+    """(name, value) pairs for the head of the report."""
+    now = datetime.datetime.now(datetime.timezone.utc)
+    scans = ", ".join(scan.name for scan in context.scans) or "none"
+    return [
+        ("made", f"{now:%Y-%m-%d %H:%M} UTC, {'quick' if context.quick else 'full'} mode"),
+        ("command", f"`{command_line}`"),
+        ("version", f"{said_by(context.curlidar, '--version')}, commit {commit()}"),
+        ("machine", f"{cpu()}, {len(os.sched_getaffinity(0))} cores, "
+                    f"{platform.system()} {platform.machine()}"),
+        ("compiler", said_by("c++", "--version") or "not installed"),
+        ("real scans", scans),
+        ("simulated scenes", ", ".join(f"{scene.name} ({scene.sensor}, seed {scene.seed})"
+                                       for scene in context.scenes)),
+    ]
