@@ -2,28 +2,22 @@
 // Measures for ./dev rate-distortion, one JSON object a line.
 //   rate_distortion peers GRID           size of the grid, then every peer over its settings
 //   rate_distortion errors GRID DECODED  a decoded cloud with a point for each occupied cell
+//   rate_distortion cloud SCAN [--codecs NAME,NAME..] [--settings N]
+//                                        the peers on a raw scan, every return; see cloud.hpp
 // GRID is an organised cloud of `curlidar project`. Rates count every byte of a stream.
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cstdio>
-#include <nlohmann/json.hpp>
+#include <charconv>
 #include <string_view>
 
 #include "base/try.hpp"
-#include "curlidar/compare.hpp"
+#include "cloud.hpp"
 #include "curlidar/io.hpp"
 #include "peers/peers.hpp"
+#include "report_json.hpp"
 
 namespace curlidar::bench {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json stats_json(const DistanceStats& stats) {
-  return {{"mean", stats.mean}, {"rms", stats.rms}, {"p95", stats.p95}, {"max", stats.max}};
-}
 
 /// Errors of a decoded cloud: nearest-neighbour distances both ways, and where points still lie in
 /// the order of the cells, each point's own.
@@ -51,7 +45,7 @@ Result<Json> errors_json(const Grid& grid, const Cloud& decoded, Order order) {
 
 Status print_peer(const Grid& grid, const Peer& peer) {
   if (!peer.run) {
-    fmt::print("{}\n", Json{{"codec", peer.name}, {"skipped", "not built"}}.dump());
+    print_line({{"codec", peer.name}, {"skipped", kNotBuilt}});
     return {};
   }
   for (const double setting : peer.sweep) {
@@ -64,39 +58,75 @@ Status print_peer(const Grid& grid, const Peer& peer) {
       line["bytes"] = decoded->bytes;
       line.update(errors);
     }
-    fmt::print("{}\n", line.dump());
-    std::fflush(stdout);
+    print_line(line);
   }
   return {};
 }
 
-Status run(std::string_view what, const std::string& grid_path, const char* decoded_path) {
-  CURLIDAR_TRY_ASSIGN(cloud, read_cloud(grid_path));
-  CURLIDAR_TRY_ASSIGN(grid, make_grid(cloud, grid_path));
-  if (what == "peers") {
-    fmt::print(
-        "{}\n",
-        Json{{"rows", grid.mask.rows}, {"cols", grid.mask.columns}, {"cells", grid.ranges_m.size()}}
-            .dump());
-    for (const Peer& peer : all_peers()) CURLIDAR_TRY(print_peer(grid, peer));
-    return {};
-  }
+using Arguments = std::vector<std::string>;
+const Error kUsage{ErrorCode::invalid_argument,
+                   "usage: rate_distortion peers GRID | errors GRID DECODED | "
+                   "cloud SCAN [--codecs NAME,NAME..] [--settings N]"};
+
+Result<Grid> read_grid(const std::string& path) {
+  CURLIDAR_TRY_ASSIGN(cloud, read_cloud(path));
+  return make_grid(cloud, path);
+}
+
+Status print_peers(const std::string& grid_path) {
+  CURLIDAR_TRY_ASSIGN(grid, read_grid(grid_path));
+  print_line(
+      {{"rows", grid.mask.rows}, {"cols", grid.mask.columns}, {"cells", grid.ranges_m.size()}});
+  for (const Peer& peer : all_peers()) CURLIDAR_TRY(print_peer(grid, peer));
+  return {};
+}
+
+Status print_errors(const std::string& grid_path, const std::string& decoded_path) {
+  CURLIDAR_TRY_ASSIGN(grid, read_grid(grid_path));
   CURLIDAR_TRY_ASSIGN(decoded, read_cloud(decoded_path));
   CURLIDAR_TRY_ASSIGN(errors, errors_json(grid, decoded, Order::ranges));
-  fmt::print("{}\n", errors.dump());
+  print_line(errors);
   return {};
+}
+
+std::vector<std::string> names_of(std::string_view list) {
+  std::vector<std::string> names;
+  while (!list.empty()) {
+    const std::size_t comma = std::min(list.find(','), list.size());
+    names.emplace_back(list.substr(0, comma));
+    list.remove_prefix(std::min(comma + 1, list.size()));
+  }
+  return names;
+}
+
+Status run_cloud(const Arguments& arguments) {
+  CloudOptions options;
+  for (std::size_t i = 2; i + 1 < arguments.size(); i += 2) {
+    const std::string &option = arguments[i], &value = arguments[i + 1];
+    if (option == "--codecs") {
+      options.codecs = names_of(value);
+      continue;
+    }
+    const char* const end = value.data() + value.size();
+    const auto parsed = std::from_chars(value.data(), end, options.settings);
+    if (option != "--settings" || parsed.ec != std::errc() || parsed.ptr != end) return kUsage;
+  }
+  return print_cloud(arguments[1], options);
+}
+
+Status run(const Arguments& arguments) {
+  const std::string what = arguments.empty() ? "" : arguments[0];
+  if (what == "peers" && arguments.size() == 2) return print_peers(arguments[1]);
+  if (what == "errors" && arguments.size() == 3) return print_errors(arguments[1], arguments[2]);
+  if (what == "cloud" && arguments.size() % 2 == 0) return run_cloud(arguments);
+  return kUsage;
 }
 
 }  // namespace
 }  // namespace curlidar::bench
 
 int main(int argc, char** argv) {
-  const std::string_view what = argc > 1 ? argv[1] : "";
-  if (!(what == "peers" && argc == 3) && !(what == "errors" && argc == 4)) {
-    fmt::print(stderr, "usage: rate_distortion peers GRID | errors GRID DECODED\n");
-    return 2;
-  }
-  const auto status = curlidar::bench::run(what, argv[2], argc > 3 ? argv[3] : "");
+  const auto status = curlidar::bench::run({argv + 1, argv + argc});
   if (status) return 0;
   fmt::print(stderr, "rate_distortion: {}\n", status.error().message);
   return 1;
