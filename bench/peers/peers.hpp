@@ -13,6 +13,7 @@
 
 #include "curlidar/cloud.hpp"
 #include "curlidar/result.hpp"
+#include "curlidar/sensor.hpp"
 
 namespace curlidar::bench {
 
@@ -33,6 +34,13 @@ struct Grid {
 
 /// An organised cloud as `curlidar project` writes it. An error if nothing is occupied.
 Result<Grid> make_grid(const Cloud& cloud, const std::string& name);
+
+/// A raw scan, every range, on a row for each ring (radially on cell centres). Unlike `project`, a
+/// row is a cone z = height + slope * distance, fitted, since beams do not start at the origin, and
+/// its columns are turned to where most of its returns lie: both save a range image centimetres of
+/// error, and its decoder gets these three numbers of a row for nothing. Returns that share a cell
+/// with one nearer its centre are lost. `found` is what detect_sensor says of this cloud.
+Grid ring_image(const Cloud& cloud, const Detection& found, std::size_t columns);
 
 /// How a decoded cloud lies beside the coded one.
 enum class Order {

@@ -6,7 +6,7 @@
 
 #include "base/try.hpp"
 #include "curlidar/io.hpp"
-#include "curlidar/project.hpp"
+#include "curlidar/sensor.hpp"
 #include "peers/peers.hpp"
 #include "report_json.hpp"
 
@@ -20,8 +20,7 @@ const std::map<std::string, std::vector<double>> kSweeps = {
     {"xyz-zstd19", {.002, .004, .008, .016, .028, .056, .112, .16}}};
 // Points that share a cell are lost: finer steps than these do not make the error less.
 const std::vector<double> kRangeSteps_m = {.004, .01, .02, .04, .08, .16, .28, .4};
-constexpr std::uint32_t kColumns[] = {2048, 4096};
-constexpr double kNoLimit_m = 1e6;
+constexpr std::size_t kColumns[] = {2048, 4096};
 
 /// What a codec is given, and what its time and error count from.
 struct Input {
@@ -40,26 +39,11 @@ Input points_of(const Cloud& returns) {
   return {{{}, returns, {}}, 0, {}};
 }
 
-/// Rows at the elevations of the true rings, every range.
-Input range_image_of(const Cloud& returns, const Result<Detection>& found, std::uint32_t columns) {
-  Input input;
-  if (!found) {
-    input.failure = found.error().message;
-    return input;
-  }
-  ProjectSettings settings;
-  settings.row_rule = RowRule::rings;
-  settings.columns = columns;
-  settings.max_range.metres = kNoLimit_m;
+Input range_image_of(const Cloud& cloud, const Result<Detection>& found, std::size_t columns) {
+  if (!found) return {{}, 0, found.error().message};
   CpuTimer timer;
-  const Result<Cloud> image = project(returns, *found, settings);
+  Input input{ring_image(cloud, *found, columns), 0, {}};
   input.project_ms = timer.lap_ms();
-  Result<Grid> grid = image ? make_grid(*image, "range image") : Result<Grid>(image.error());
-  if (grid) {
-    input.grid = std::move(*grid);
-  } else {
-    input.failure = grid.error().message;
-  }
   return input;
 }
 
@@ -141,7 +125,7 @@ Status print_cloud(const std::string& scan_path, const CloudOptions& options) {
   // Rings are told from the whole scan, and belong to its slots.
   const Input points = points_of(returns);
   std::vector<Input> images;
-  for (const std::uint32_t columns : kColumns) {
+  for (const std::size_t columns : kColumns) {
     images.push_back(range_image_of(cloud, found, columns));
   }
   const std::vector<Contest> contests = contests_of(points, images);
