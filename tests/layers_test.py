@@ -25,8 +25,8 @@ HEADERS = {
     "version": "base", "result": "base", "progress": "base", "vec3": "base", "cloud": "cloud",
     "io": "io", "sensor": "sensor", "calibrate": "sensor", "lattice": "image", "project": "image",
     "settings": "image",
-    "field": "field", "paper": "codec", "codec": "codec", "compare": "metrics", "simulate": "simulate",
-    "render": "render", "calibrate": "sensor", "verify": "codec",
+    "field": "field", "paper": "codec", "codec": "codec", "compare": "metrics", "metrics": "metrics",
+    "simulate": "simulate", "render": "render", "calibrate": "sensor", "verify": "codec",
 }
 
 SOURCE_FOLDERS = ["include", "src", "apps", "tests", "bench", "fuzz", "tools"]

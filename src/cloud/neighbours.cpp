@@ -18,6 +18,7 @@ namespace {
 /// Returns of a cloud times a power of two, in the shape nanoflann asks for.
 struct ReturnSet {
   std::vector<Vec3> points;
+  std::vector<std::size_t> slots;  // ascending
 
   // nanoflann prescribes these names.
   std::size_t kdtree_get_point_count() const { return points.size(); }
@@ -35,7 +36,41 @@ using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<do
                                                  ReturnSet, 3, std::size_t>;
 
 constexpr std::size_t kPointsPerLeaf = 12;
-constexpr std::size_t kQueriesPerTask = 2048;
+
+/// The best points seen, by squared distance and then by index: nanoflann's own set keeps whichever
+/// of equally near points the tree shows first.
+class OrderedResult {
+ public:
+  explicit OrderedResult(std::span<Neighbour> best) : best_(best) {}
+
+  // nanoflann prescribes these names and types.
+  using DistanceType = double;
+  using IndexType = std::size_t;
+  using CountType = std::size_t;
+  std::size_t size() const { return count_; }
+  bool empty() const { return count_ == 0; }
+  bool full() const { return count_ == best_.size(); }
+  /// The search drops what is not below this, so equally near points must be.
+  double worstDist() const {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    return full() ? std::nextafter(best_[count_ - 1].distance, kInfinity) : kInfinity;
+  }
+  bool addPoint(double squared, std::size_t index) {
+    const auto before = [&](const Neighbour& n) {
+      return squared < n.distance || (squared == n.distance && index < n.slot);
+    };
+    if (full() && !before(best_[count_ - 1])) return true;
+    std::size_t place = full() ? count_ - 1 : count_++;
+    for (; place > 0 && before(best_[place - 1]); --place) best_[place] = best_[place - 1];
+    best_[place] = {index, squared};
+    return true;
+  }
+  void sort() {}
+
+ private:
+  std::span<Neighbour> best_;
+  std::size_t count_ = 0;
+};
 
 double largest_coordinate(const Cloud& cloud) {
   double largest = 0;
@@ -57,36 +92,75 @@ double safe_scale(double largest) {
 
 }  // namespace
 
-Result<std::vector<double>> distances_to_nearest(const Cloud& from, const Cloud& to,
-                                                 std::size_t threads) {
-  const double scale = safe_scale(std::max(largest_coordinate(from), largest_coordinate(to)));
+struct ReturnTree::Index {
   ReturnSet set;
-  set.points.reserve(to.size());
-  for (const Vec3& p : to.positions) {
-    if (is_return(p)) set.points.push_back(p * scale);
+  double scale = 1;
+  std::unique_ptr<Tree> tree;  // refers to set
+};
+
+ReturnTree::ReturnTree(const Cloud& cloud, const Cloud& queries)
+    : index_(std::make_unique<Index>()) {
+  index_->scale = safe_scale(std::max(largest_coordinate(cloud), largest_coordinate(queries)));
+  ReturnSet& set = index_->set;
+  set.points.reserve(cloud.size());
+  set.slots.reserve(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!is_return(cloud.positions[i])) continue;
+    set.points.push_back(cloud.positions[i] * index_->scale);
+    set.slots.push_back(i);
   }
-  if (set.points.empty()) {
+  if (set.points.empty()) return;
+  index_->tree =
+      std::make_unique<Tree>(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kPointsPerLeaf));
+  index_->tree->buildIndex();
+}
+
+ReturnTree::~ReturnTree() = default;
+ReturnTree::ReturnTree(ReturnTree&&) noexcept = default;
+ReturnTree& ReturnTree::operator=(ReturnTree&&) noexcept = default;
+
+std::size_t ReturnTree::size() const {
+  return index_->set.points.size();
+}
+
+std::size_t ReturnTree::nearest(const Vec3& query, std::span<Neighbour> found) const {
+  found = found.first(std::min(found.size(), size()));
+  if (found.empty()) return 0;
+  const Vec3 p = query * index_->scale;
+  const double coordinates[3] = {p.x, p.y, p.z};
+  OrderedResult result(found);
+  index_->tree->findNeighbors(result, coordinates, {});
+  for (Neighbour& n : found) {
+    n = {index_->set.slots[n.slot], std::sqrt(n.distance) / index_->scale};
+  }
+  return found.size();
+}
+
+Result<std::vector<Neighbour>> nearest_returns(const Cloud& from, const Cloud& to,
+                                               std::size_t threads) {
+  const ReturnTree tree(to, from);
+  if (tree.size() == 0) {
     return Error{ErrorCode::invalid_argument,
                  "cannot measure distances to a cloud without a return (all of its " +
                      std::to_string(to.size()) + " points are zero or not finite)"};
   }
-  Tree tree(3, set, nanoflann::KDTreeSingleIndexAdaptorParams(kPointsPerLeaf));
-  tree.buildIndex();
-
-  std::vector<double> distances(from.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<Neighbour> nearest(from.size(), {0, std::numeric_limits<double>::quiet_NaN()});
   const std::size_t tasks = (from.size() + kQueriesPerTask - 1) / kQueriesPerTask;
   parallel_for(tasks, threads, [&](std::size_t task) {
     const std::size_t end = std::min(from.size(), (task + 1) * kQueriesPerTask);
     for (std::size_t i = task * kQueriesPerTask; i < end; ++i) {
-      if (!is_return(from.positions[i])) continue;
-      const Vec3 p = from.positions[i] * scale;
-      const double query[3] = {p.x, p.y, p.z};
-      std::size_t index = 0;
-      double squared = 0;
-      tree.knnSearch(query, 1, &index, &squared);
-      distances[i] = std::sqrt(squared) / scale;
+      if (is_return(from.positions[i])) tree.nearest(from.positions[i], {&nearest[i], 1});
     }
   });
+  return nearest;
+}
+
+Result<std::vector<double>> distances_to_nearest(const Cloud& from, const Cloud& to,
+                                                 std::size_t threads) {
+  CURLIDAR_TRY_ASSIGN(nearest, nearest_returns(from, to, threads));
+  std::vector<double> distances;
+  distances.reserve(nearest.size());
+  for (const Neighbour& n : nearest) distances.push_back(n.distance);
   return distances;
 }
 

@@ -126,10 +126,78 @@ class CompareTest(CommandTest):
         self.assertAlmostEqual(report["b_to_a"]["max"], 3, 12)
         self.assertAlmostEqual(report["b_to_a"]["mean"], (10 * 0.5 + 3) / 11, 12)
 
+    def test_metrics_by_hand(self):
+        report = self.run_json("compare", "--thresholds", "0.1,0.5", "a.bin", "b.bin", "--peak", 2)
+        mean = (10 * 0.5 + 3) / 11
+        square = (10 * 0.25 + 9) / 11
+        self.assertAlmostEqual(report["symmetric"]["mean"], mean, 12)
+        self.assertAlmostEqual(report["symmetric"]["rms"], math.sqrt(square), 12)
+        self.assertAlmostEqual(report["chamfer_m"], (0.5 + mean) / 2, 12)
+        self.assertAlmostEqual(report["chamfer_m2"], 0.25 + square, 12)
+        far, near = report["matches"]
+        self.assertEqual((far["precision"], far["recall"], far["f_score"]), (0, 0, 0))
+        self.assertAlmostEqual(near["precision"], 10 / 11, 12)
+        self.assertEqual((near["threshold"], near["recall"]), (0.5, 1))
+        self.assertAlmostEqual(near["f_score"], 20 / 21, 12)
+        errors = report["point_to_point"]
+        self.assertEqual(report["peak"], 2)
+        self.assertAlmostEqual(errors["a_to_b_mse"], 0.25, 12)
+        self.assertAlmostEqual(errors["mse"], square, 12)
+        self.assertAlmostEqual(errors["rms"], math.sqrt(square), 12)
+        self.assertAlmostEqual(errors["psnr_db"], 10 * math.log10(3 * 4 / square), 9)
+        self.assertEqual(report["voxels"]["voxel"], 0.1)
+        self.assertEqual([report["voxels"][key] for key in
+                          ("occupied_a", "occupied_b", "occupied_both", "iou")], [10, 11, 0, 0])
+        for key in ("point_to_plane", "images", "quantiles"):
+            self.assertIsNone(report[key], key)
+        self.assertEqual(report["notes"], [])
+
+    def test_planes_and_quantiles(self):
+        # A floor of 20 x 20 points, and the same slid along itself by 1 cm and lifted by 2 mm.
+        floor = [(5 + 0.1 * (i % 20), 0.1 * (i // 20), -1.0, 0) for i in range(400)]
+        write_kitti(self.path("floor.bin"), floor)
+        write_kitti(self.path("moved.bin"), [(x + 0.01, y, z + 0.002, 0) for x, y, z, _ in floor])
+        report = self.run_json("compare", "floor.bin", "moved.bin", "--planes", "--quantiles", 3)
+        self.assertAlmostEqual(report["point_to_plane"]["rms"], 0.002, 6)
+        self.assertEqual(report["point_to_plane"]["normals"], "estimated")
+        self.assertAlmostEqual(report["point_to_point"]["rms"], math.hypot(0.01, 0.002), 6)
+        self.assertEqual(report["quantiles"]["fractions"], [0, 0.5, 1])
+        for side in ("a_to_b", "b_to_a"):
+            for value in report["quantiles"][side]:
+                self.assertAlmostEqual(value, math.hypot(0.01, 0.002), 6)
+
+    def test_images(self):
+        for name, xs in [("a", [1, 0, 4, 5, 90, 0]), ("b", [2, 3, 4, 0, 90, 0])]:
+            rows = "".join(f"{x} 0 0\n" for x in xs)
+            self.path(f"{name}.pcd").write_text(
+                "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 3\n"
+                f"HEIGHT 2\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 6\nDATA ascii\n{rows}")
+        images = self.run_json("compare", "a.pcd", "b.pcd", "--images")["images"]
+        self.assertEqual([images[key] for key in ("pixels", "valid_a", "valid_b", "valid_both",
+                                                  "missed", "invented")], [6, 4, 4, 3, 1, 1])
+        self.assertAlmostEqual(images["mask_iou"], 0.6, 12)
+        self.assertAlmostEqual(images["mae_all"], (1 + 3 + 5) / 6, 12)
+        self.assertAlmostEqual(images["mae_both"], 1 / 3, 12)
+        self.assertAlmostEqual(images["rmse_both"], math.sqrt(1 / 3), 12)
+        images = self.run_json("compare", "a.pcd", "b.pcd", "--images", "--min-range", 1.5,
+                               "--max-range", 80)["images"]
+        self.assertEqual((images["valid_a"], images["valid_b"]), (2, 3))
+        self.assertAlmostEqual(images["mae_all"], (2 + 3 + 5) / 6, 12)
+        self.assertIn("mask IoU", self.run_ok("compare", "a.pcd", "b.pcd", "--images").decode())
+        self.run_fail(INPUT, "compare", "a.bin", "b.bin", "--images", says="not organised")
+        self.run_fail(USAGE, "compare", "a.pcd", "b.pcd", "--images", "--min-range", 5,
+                      "--max-range", 4)
+
     def test_itself(self):
         report = self.run_json("compare", "a.bin", "a.bin")
         self.assertEqual(report["a_to_b"]["max"], 0)
         self.assertEqual(report["b_to_a"]["max"], 0)
+        self.assertIsNone(report["point_to_point"]["psnr_db"])
+        self.assertEqual(len(report["notes"]), 1)
+        self.assertIn("infinite", report["notes"][0])
+        self.assertEqual(report["matches"][0]["f_score"], 1)
+        self.assertEqual([match["threshold"] for match in report["matches"]], [.02, .05, .1, .2])
+        self.assertIn("no error", self.run_ok("compare", "a.bin", "a.bin").decode())
 
     def test_standard_input_and_the_table(self):
         text = self.run_ok("compare", "-", "b.bin", "--format", "kitti",

@@ -4,44 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdint>
-#include <limits>
-#include <random>
+
+#include "support/metric_clouds.hpp"
 
 namespace curlidar {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
-
-Cloud cloud_of(std::vector<Vec3> positions) {
-  Cloud cloud;
-  cloud.positions = std::move(positions);
-  cloud.width = static_cast<std::uint32_t>(cloud.positions.size());
-  return cloud;
-}
-
-/// Coordinates on a grid of `step` metres, so that exact ties and duplicates are common.
-Cloud random_cloud(std::size_t size, std::uint32_t seed, double step) {
-  std::mt19937 engine(seed);
-  const auto coordinate = [&] { return (static_cast<double>(engine() % 200) - 100) * step; };
-  std::vector<Vec3> positions(size);
-  for (Vec3& p : positions) p = {coordinate(), coordinate(), coordinate() * 0.1};
-  return cloud_of(std::move(positions));
-}
-
-std::vector<double> brute_force(const Cloud& from, const Cloud& to) {
-  std::vector<double> distances(from.size(), kNan);
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    if (!is_return(from.positions[i])) continue;
-    double best = kInf;
-    for (const Vec3& p : to.positions) {
-      if (is_return(p)) best = std::min(best, norm(from.positions[i] - p));
-    }
-    distances[i] = best;
-  }
-  return distances;
-}
+using test::brute_force;
+using test::cloud_of;
+using test::kInf;
+using test::kNan;
+using test::random_cloud;
 
 TEST(NearestDistances, AgreesWithBruteForce) {
   for (const double step : {0.01, 0.5, 1e6}) {
