@@ -3,6 +3,15 @@
 
 namespace curlidar::bench {
 
+std::vector<double> thinned(const std::vector<double>& sweep, std::size_t count) {
+  if (count == 0 || sweep.size() <= count) return sweep;
+  if (count == 1) return {sweep[sweep.size() / 2]};
+  std::vector<double> chosen;
+  const std::size_t last = sweep.size() - 1, gaps = count - 1;
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(sweep[(i * last + gaps / 2) / gaps]);
+  return chosen;
+}
+
 std::vector<Peer> all_peers() {
   std::vector<Peer> peers{range_image_peer(png_coder()), range_image_peer(zstd_coder()),
                           zstd_delta_peer()};

@@ -4,6 +4,14 @@
 
 namespace curlidar::bench {
 
+Cloud returns_of(const Cloud& cloud) {
+  std::vector<std::uint32_t> indices;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (is_return(cloud.positions[i])) indices.push_back(static_cast<std::uint32_t>(i));
+  }
+  return select(cloud, indices);
+}
+
 Result<Grid> make_grid(const Cloud& cloud, const std::string& name) {
   if (!cloud.organised()) {
     return Error{ErrorCode::invalid_argument, name + ": not organised; use curlidar project"};

@@ -32,6 +32,9 @@ struct Grid {
   std::vector<double> ranges_m;  ///< their distances from the sensor
 };
 
+/// The slots that hold a return, in their order.
+Cloud returns_of(const Cloud& cloud);
+
 /// An organised cloud as `curlidar project` writes it. An error if nothing is occupied.
 Result<Grid> make_grid(const Cloud& cloud, const std::string& name);
 
@@ -100,6 +103,9 @@ Peer zstd_delta_peer();   // zstd_peer.cpp: x, y, z in steps, differences, zstd 
 ImageCoder jxl_coder();  // jxl_peer.cpp: JPEG XL, lossless, effort 9
 Peer draco_peer();       // draco_peer.cpp: kd-tree, speed 0
 Peer pcl_octree_peer();  // pcl_peer.cpp: one point for each voxel
+
+/// At most `count` settings of a sweep, its ends and what lies evenly between; 0 = all.
+std::vector<double> thinned(const std::vector<double>& sweep, std::size_t count);
 
 /// All of them. Those whose library was not found when this was built have nothing to run.
 std::vector<Peer> all_peers();

@@ -66,17 +66,6 @@ std::vector<Contest> contests_of(const Input& points, const std::vector<Input>& 
   return contests;
 }
 
-/// At most `count` of a sweep: its ends and what lies evenly between.
-std::vector<double> thinned(const std::vector<double>& sweep, std::size_t count) {
-  if (count == 0 || sweep.size() <= count) return sweep;
-  std::vector<double> chosen;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t last = sweep.size() - 1;
-    chosen.push_back(sweep[count == 1 ? last / 2 : (i * last + (count - 1) / 2) / (count - 1)]);
-  }
-  return chosen;
-}
-
 Result<Json> measured_json(const Cloud& returns, const Input& input, const Decoded& decoded) {
   CURLIDAR_TRY_ASSIGN(nearest, compare(returns, decoded.cloud));
   return Json{{"bytes", decoded.bytes},
@@ -106,14 +95,6 @@ Status print_contest(const Cloud& returns, const Contest& contest, std::size_t s
     print_line(line);
   }
   return {};
-}
-
-Cloud returns_of(const Cloud& cloud) {
-  std::vector<std::uint32_t> indices;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (is_return(cloud.positions[i])) indices.push_back(static_cast<std::uint32_t>(i));
-  }
-  return select(cloud, indices);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Measures for ./dev rate-distortion, one JSON object a line.
-//   rate_distortion peers GRID           size of the grid, then every peer over its settings
+//   rate_distortion peers GRID [--settings N]
+//                                        size of the grid, then every peer over its settings, at
+//                                        most N of them
 //   rate_distortion errors GRID DECODED  a decoded cloud with a point for each occupied cell
 //   rate_distortion cloud SCAN [--codecs NAME,NAME..] [--settings N]
 //                                        the peers on a raw scan, every return; see cloud.hpp
@@ -43,12 +45,12 @@ Result<Json> errors_json(const Grid& grid, const Cloud& decoded, Order order) {
   return json;
 }
 
-Status print_peer(const Grid& grid, const Peer& peer) {
+Status print_peer(const Grid& grid, const Peer& peer, std::size_t settings) {
   if (!peer.run) {
     print_line({{"codec", peer.name}, {"skipped", kNotBuilt}});
     return {};
   }
-  for (const double setting : peer.sweep) {
+  for (const double setting : thinned(peer.sweep, settings)) {
     Json line{{"codec", peer.name}, {"setting", fmt::format("{} {}", peer.setting, setting)}};
     Result<Decoded> decoded = peer.run(grid, setting);
     if (!decoded) {
@@ -56,6 +58,8 @@ Status print_peer(const Grid& grid, const Peer& peer) {
     } else {
       CURLIDAR_TRY_ASSIGN(errors, errors_json(grid, decoded->cloud, decoded->order));
       line["bytes"] = decoded->bytes;
+      line["encode_ms"] = decoded->encode_ms;
+      line["decode_ms"] = decoded->decode_ms;
       line.update(errors);
     }
     print_line(line);
@@ -65,7 +69,7 @@ Status print_peer(const Grid& grid, const Peer& peer) {
 
 using Arguments = std::vector<std::string>;
 const Error kUsage{ErrorCode::invalid_argument,
-                   "usage: rate_distortion peers GRID | errors GRID DECODED | "
+                   "usage: rate_distortion peers GRID [--settings N] | errors GRID DECODED | "
                    "cloud SCAN [--codecs NAME,NAME..] [--settings N]"};
 
 Result<Grid> read_grid(const std::string& path) {
@@ -73,18 +77,19 @@ Result<Grid> read_grid(const std::string& path) {
   return make_grid(cloud, path);
 }
 
-Status print_peers(const std::string& grid_path) {
+Status print_peers(const std::string& grid_path, std::size_t settings) {
   CURLIDAR_TRY_ASSIGN(grid, read_grid(grid_path));
   print_line(
       {{"rows", grid.mask.rows}, {"cols", grid.mask.columns}, {"cells", grid.ranges_m.size()}});
-  for (const Peer& peer : all_peers()) CURLIDAR_TRY(print_peer(grid, peer));
+  for (const Peer& peer : all_peers()) CURLIDAR_TRY(print_peer(grid, peer, settings));
   return {};
 }
 
 Status print_errors(const std::string& grid_path, const std::string& decoded_path) {
   CURLIDAR_TRY_ASSIGN(grid, read_grid(grid_path));
   CURLIDAR_TRY_ASSIGN(decoded, read_cloud(decoded_path));
-  CURLIDAR_TRY_ASSIGN(errors, errors_json(grid, decoded, Order::ranges));
+  // A decoder that gives back every slot gives back empty cells too.
+  CURLIDAR_TRY_ASSIGN(errors, errors_json(grid, returns_of(decoded), Order::ranges));
   print_line(errors);
   return {};
 }
@@ -99,11 +104,11 @@ std::vector<std::string> names_of(std::string_view list) {
   return names;
 }
 
-Status run_cloud(const Arguments& arguments) {
+Result<CloudOptions> options_of(const Arguments& arguments) {
   CloudOptions options;
   for (std::size_t i = 2; i + 1 < arguments.size(); i += 2) {
     const std::string &option = arguments[i], &value = arguments[i + 1];
-    if (option == "--codecs") {
+    if (option == "--codecs" && arguments[0] == "cloud") {
       options.codecs = names_of(value);
       continue;
     }
@@ -111,15 +116,16 @@ Status run_cloud(const Arguments& arguments) {
     const auto parsed = std::from_chars(value.data(), end, options.settings);
     if (option != "--settings" || parsed.ec != std::errc() || parsed.ptr != end) return kUsage;
   }
-  return print_cloud(arguments[1], options);
+  return options;
 }
 
 Status run(const Arguments& arguments) {
   const std::string what = arguments.empty() ? "" : arguments[0];
-  if (what == "peers" && arguments.size() == 2) return print_peers(arguments[1]);
   if (what == "errors" && arguments.size() == 3) return print_errors(arguments[1], arguments[2]);
-  if (what == "cloud" && arguments.size() % 2 == 0) return run_cloud(arguments);
-  return kUsage;
+  if ((what != "peers" && what != "cloud") || arguments.size() % 2 != 0) return kUsage;
+  CURLIDAR_TRY_ASSIGN(options, options_of(arguments));
+  if (what == "peers") return print_peers(arguments[1], options.settings);
+  return print_cloud(arguments[1], options);
 }
 
 }  // namespace

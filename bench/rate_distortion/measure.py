@@ -4,6 +4,11 @@ command. Every measured point of a curve is a dict with the keys of COLUMNS."""
 import json
 import re
 import subprocess
+import sys
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+from common.timed import run  # noqa: E402
 
 OURS = "curlidar"
 TARGETS_M = (.05, .02, .01, .005, .002)
@@ -65,14 +70,17 @@ def ours_at(grid, size, program, curlidar, target_m, effort, folder):
     """One file of ours, decoded by the command and measured here, not by its encoder."""
     coded, decoded = folder / "ours.curl", folder / "ours.pcd"
     options = [] if effort == "default" else ["--effort", effort]
-    report = json.loads(output_of(
-        curlidar, "encode", grid.path, "--profile", "compact", "--error", str(target_m), *options,
-        "--attributes", "none", "--threads", "1", "--json", "-o", coded))
-    output_of(curlidar, "decode", coded, "--threads", "1", "--quiet", "-o", decoded)
+    told, encode_s = run(
+        [curlidar, "encode", grid.path, "--profile", "compact", "--error", str(target_m), *options,
+         "--attributes", "none", "--threads", "1", "--json", "-o", coded], folder)
+    report = json.loads(told)
+    _, decode_s = run([curlidar, "decode", coded, "--threads", "1", "--quiet", "-o", decoded],
+                      folder)
     measured = json.loads(output_of(program, "errors", grid.path, decoded))
     measured["bytes"] = coded.stat().st_size
     result = point(grid, size, OURS, f"error {target_m} effort {effort}", measured)
-    result.update(target_m=target_m, effort=effort)
+    result.update(target_m=target_m, effort=effort, encode_ms=1e3 * encode_s,
+                  decode_ms=1e3 * decode_s)
     result.update({f"{part}_bits": report.get("breakdown", {}).get(part) for part in BREAKDOWN})
     return result, disagreements(report, result)
 

@@ -10,7 +10,9 @@ import sys
 from html import escape
 
 from measure import OURS
-from table import GOALS, frontier, is_reference
+from table import GOALS, is_reference
+
+from common.curves import frontier
 
 PANEL_W, PANEL_H, PER_ROW = 360, 250, 3
 LEFT, RIGHT, TOP, BOTTOM = 40, 18, 34, 40  # of a panel, around its axes

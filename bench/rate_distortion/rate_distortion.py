@@ -64,7 +64,8 @@ def measure_scan(scan, options):
 def store(points, path):
     """One line for each point: numbers with the digits that matter, so that files compare."""
     with open(path, "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, measure.COLUMNS, lineterminator="\n", restval="")
+        writer = csv.DictWriter(file, measure.COLUMNS, lineterminator="\n", restval="",
+                                extrasaction="ignore")
         writer.writeheader()
         for p in points:
             writer.writerow({key: f"{value:.6g}" if isinstance(value, float) else value

@@ -5,30 +5,17 @@ import math
 from measure import EFFORTS, OURS, TARGETS_M
 from scans import LIMITS, REFERENCE
 
+from common.curves import rate_at
+
 # Bits a cell on the reference scan: at effort 9, at the default effort, and of the best open peer
 # when the goals were set.
 GOALS = {.05: (.62, .75, 1.66), .02: (1.35, 1.6, 2.34), .01: (2.2, 2.6, 3.03),
          .005: (3.3, 3.7, 3.9), .002: (4.75, 5.0, 5.15)}
 
 
-def frontier(points):
-    """The points that no other beats in both error and rate, by rising error."""
-    best, kept = math.inf, []
-    for p in sorted(points, key=lambda p: (p["error_m"], p["bits_per_cell"])):
-        if p["bits_per_cell"] < best:
-            best = p["bits_per_cell"]
-            kept.append(p)
-    return kept
-
-
 def bits_at(points, error_m):
     """Bits a cell at an error, linear in its logarithm; None outside what was measured."""
-    kept = frontier(points)
-    for a, b in zip(kept, kept[1:]):
-        if a["error_m"] <= error_m <= b["error_m"]:
-            t = math.log(error_m / a["error_m"]) / math.log(b["error_m"] / a["error_m"])
-            return (1 - t) * a["bits_per_cell"] + t * b["bits_per_cell"]
-    return None
+    return rate_at(points, error_m)
 
 
 def best_peer(points, error_m):

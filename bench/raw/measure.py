@@ -2,13 +2,15 @@
 """Encodes a scan, has the file verified, and measures what decodes from it. Every measurement is a
 dict with the keys of COLUMNS."""
 import json
-import os
-import subprocess
+import sys
 import tempfile
 import threading
 from pathlib import Path
 
 import plan
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+from common.timed import CommandFailed, run  # noqa: E402
 
 IDENTITY = ("scan", "profile", "mode", "target_m", "effort")
 PARTS = ("header", "mask", "partition", "modes", "coefficients", "labels", "residual")
@@ -20,26 +22,6 @@ COLUMNS = (
     "loose_points", "corrected_points", *(f"{part}_bits" for part in PARTS),
     *(f"{part}_bits" for part in RECORD_PARTS if part != "attributes"), "encodings", "cpu_s",
     "verify_cpu_s", "build", "key", "failure")
-
-
-class CommandFailed(RuntimeError):
-    pass
-
-
-def run(command, folder, allowed=(0,)):
-    """(standard output, CPU seconds of the command alone), whatever else runs beside it."""
-    with tempfile.TemporaryFile(dir=folder) as out, tempfile.TemporaryFile(dir=folder) as err:
-        child = subprocess.Popen([str(part) for part in command], stdout=out, stderr=err,
-                                 stdin=subprocess.DEVNULL)
-        _, status, usage = os.wait4(child.pid, 0)
-        child.returncode = os.waitstatus_to_exitcode(status)  # so that nobody waits for it again
-        out.seek(0)
-        err.seek(0)
-        if child.returncode not in allowed:
-            lines = err.read().decode(errors="replace").strip().splitlines()
-            said = " / ".join(lines[-2:]) or "no message"
-            raise CommandFailed(f"{command[1]} ended with {child.returncode}: {said}")
-        return out.read().decode(), usage.ru_utime + usage.ru_stime
 
 
 class Measurer:
