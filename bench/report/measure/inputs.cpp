@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/measure/inputs.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "base/try.hpp"
+#include "curlidar/io.hpp"
+#include "curlidar/paper.hpp"
+
+namespace curlidar::bench {
+
+Result<Scan> read_scan(const Arguments& arguments) {
+  Scan scan;
+  scan.path = arguments.words.front();
+  CURLIDAR_TRY_ASSIGN(cloud, read_cloud(scan.path));
+  scan.cloud = std::move(cloud);
+  scan.preset = arguments.option("preset", suggest_preset(scan.cloud));
+  CURLIDAR_TRY_ASSIGN(paper, paper_preset(scan.preset));
+  scan.settings.profile = Profile::paper;
+  scan.settings.paper = paper;
+  scan.settings.attributes.emplace();
+  scan.settings.threads = 1;
+  const std::string sensor = arguments.option("sensor", "auto");
+  if (sensor != "auto") {
+    CURLIDAR_TRY_ASSIGN(profile, load_sensor(sensor));
+    scan.settings.sensor = std::move(profile);
+  }
+  return scan;
+}
+
+EncodeSettings of_profile(EncodeSettings settings, Profile profile) {
+  settings.profile = profile;
+  settings.paper = for_profile(settings.paper, profile);
+  return settings;
+}
+
+Result<Cloud> gridded(const Cloud& scan, EncodeSettings settings) {
+  settings.paper.upsample_rows = settings.paper.upsample_columns = 1;
+  CURLIDAR_TRY_ASSIGN(grid, upsample_scan(scan, settings));
+  return std::move(grid.cloud);
+}
+
+PaperSettings range_limits(PaperSettings settings, const Cloud& grid) {
+  settings.max_range = {};
+  for (const Vec3& p : grid.positions) {
+    if (is_return(p)) settings.max_range.metres = std::max(settings.max_range.metres, norm(p));
+  }
+  return settings;
+}
+
+Cloud in_range(const Cloud& scan, const PaperSettings& settings) {
+  std::vector<std::uint32_t> kept;
+  for (std::uint32_t i = 0; i < scan.size(); ++i) {
+    const double range = is_return(scan.positions[i]) ? norm(scan.positions[i]) : 0;
+    if (range >= settings.min_range_m && range <= settings.max_range.metres) kept.push_back(i);
+  }
+  return select(scan, kept);
+}
+
+}  // namespace curlidar::bench

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the paper's comparisons start from: a scan, its sensor, its preset and its gridded cloud.
+#pragma once
+
+#include <string>
+
+#include "curlidar/codec.hpp"
+#include "report/measure/arguments.hpp"
+
+namespace curlidar::bench {
+
+struct Scan {
+  std::string path;
+  std::string preset;  ///< of the paper's settings
+  Cloud cloud;
+  EncodeSettings settings;  ///< of Profile::paper: sensor if given, no attributes, one thread
+};
+
+/// Reads the scan named by the first word; --preset (else the suggested one) and --sensor (else
+/// found in the scan) say how to take it.
+Result<Scan> read_scan(const Arguments& arguments);
+
+/// The settings as the profile starts from them.
+EncodeSettings of_profile(EncodeSettings settings, Profile profile);
+
+/// The scan as the paper grids it: the cloud that its errors are measured against. Organised, NaN
+/// in empty cells.
+Result<Cloud> gridded(const Cloud& scan, EncodeSettings settings);
+
+/// The settings with the largest kept range in metres for the upper limit, as files hold
+/// them.
+PaperSettings range_limits(PaperSettings settings, const Cloud& grid);
+
+/// The raw returns within the range limits of such settings.
+Cloud in_range(const Cloud& scan, const PaperSettings& settings);
+
+}  // namespace curlidar::bench

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Measurements of the report that the command cannot make: a verb each, JSON lines out.
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "report/measure/verbs.hpp"
+
+namespace {
+
+using namespace curlidar;
+using namespace curlidar::bench;
+
+struct Verb {
+  const char* name;
+  std::size_t words;
+  std::vector<std::string> options;
+  const char* usage;
+  Status (*run)(const Arguments&);
+};
+
+const std::vector<Verb> kVerbs{
+    {"one-to-one", 1, {"preset", "sensor"}, "SCAN [--preset P] [--sensor S]", one_to_one},
+    {"truth",
+     3,
+     {"factors", "seed"},
+     "SCENE SENSOR PRESET [--factors 2,4,8] [--seed N]",
+     truth},
+    {"held-out",
+     1,
+     {"every", "preset", "sensor"},
+     "SCAN [--every K] [--preset P] [--sensor S]",
+     held_out},
+    {"timing",
+     1,
+     {"runs", "preset", "sensor"},
+     "SCAN [--runs N] [--preset P] [--sensor S]",
+     timing},
+};
+
+int usage() {
+  fmt::print(stderr, "usage:\n");
+  for (const Verb& verb : kVerbs) {
+    fmt::print(stderr, "  report_measure {} {}\n", verb.name, verb.usage);
+  }
+  return 2;
+}
+
+int run(const std::vector<std::string>& given) {
+  for (const Verb& verb : kVerbs) {
+    if (given.empty() || given.front() != verb.name) continue;
+    const Result<Arguments> arguments =
+        parse_arguments({given.begin() + 1, given.end()}, verb.words, verb.options);
+    if (!arguments) {
+      fmt::print(stderr, "report_measure {}: {}\nusage: report_measure {} {}\n", verb.name,
+                 arguments.error().message, verb.name, verb.usage);
+      return 2;
+    }
+    const Status status = verb.run(*arguments);
+    if (status) return 0;
+    fmt::print(stderr, "report_measure {}: {}\n", verb.name, status.error().message);
+    return 1;
+  }
+  return usage();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run({argv + 1, argv + argc});
+  } catch (const std::exception& error) {  // of peer codecs and the standard library
+    fmt::print(stderr, "report_measure: {}\n", error.what());
+    return 1;
+  }
+}

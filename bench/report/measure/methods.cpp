@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report/measure/methods.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "report/measure/codecs.hpp"
+
+namespace curlidar::bench {
+namespace {
+
+constexpr double kCompactError_m = 0.05;
+constexpr double kCompactBits = 1;
+constexpr double kClose_m = 0.05;
+
+/// The method of a file: encoded, decoded, or the reason why not.
+Method coded_method(std::string name, std::string setting, const Cloud& cloud,
+                    const EncodeSettings& settings) {
+  Method method;
+  method.name = std::move(name);
+  method.setting = std::move(setting);
+  const Result<Encoded> encoded = encode(cloud, settings);
+  if (!encoded) {
+    method.skipped = encoded.error().message;
+    return method;
+  }
+  Result<DecodedScan> decoded = decode(encoded->bytes);
+  if (!decoded) {
+    method.skipped = decoded.error().message;
+    return method;
+  }
+  if (decoded->records && decoded->records->lattice == RecordLattice::none) {
+    method.skipped = "the points were coded one after the other, without a field";
+    return method;
+  }
+  method.bytes = encoded->bytes.size();
+  method.bits_per_point = encoded->report.bits_per_point;
+  method.cp_paper_percent = encoded->report.cp_paper_percent;
+  method.sampler = std::make_shared<FieldSampler>(std::move(*decoded));
+  return method;
+}
+
+Method sample_method(std::string name, const std::shared_ptr<const RingSamples>& samples,
+                     Mixing mixing) {
+  Method method;
+  method.name = std::move(name);
+  method.setting = "raw samples";
+  method.sampler = std::make_shared<RingSampler>(samples, mixing);
+  return method;
+}
+
+}  // namespace
+
+Json Method::header() const {
+  Json json{{"method", name}, {"setting", setting}};
+  if (!skipped.empty()) {
+    json["skipped"] = skipped;
+    return json;
+  }
+  if (bytes > 0) json["bytes"] = bytes, json["bits_per_point"] = bits_per_point;
+  if (cp_paper_percent > 0) json["cp_paper_percent"] = cp_paper_percent;
+  return json;
+}
+
+std::vector<Method> make_methods(const MethodInput& input) {
+  std::vector<Method> methods;
+  for (const auto& [rows, columns] : {std::pair{1u, 1u}, {2u, 1u}, {2u, 2u}}) {
+    EncodeSettings settings = input.paper;
+    settings.paper.upsample_rows = rows;
+    settings.paper.upsample_columns = columns;
+    methods.push_back(
+        coded_method("paper", fmt::format("S {}x{}", rows, columns), *input.cloud, settings));
+  }
+  for (const auto& [target, value, setting] :
+       {std::tuple{CompactTarget::error, kCompactError_m, "5 cm"},
+        {CompactTarget::bits_per_point, kCompactBits, "1 bit a point"}}) {
+    EncodeSettings settings = compact_of_scan(target, value);
+    settings.sensor = input.sensor;
+    methods.push_back(coded_method("compact", setting, *input.cloud, settings));
+  }
+  const auto samples =
+      std::make_shared<const RingSamples>(input.cloud->positions, input.ring_of_point,
+                                          input.ring_elevations, input.sensor.columns);
+  methods.push_back(sample_method("linear", samples, Mixing::linear));
+  methods.push_back(sample_method("edge-aware", samples, Mixing::edge_aware));
+  return methods;
+}
+
+void RayTally::add(double told_m, std::optional<double> true_m) {
+  const bool told = limits_.hold(told_m);
+  if (true_m && limits_.hold(*true_m)) {
+    ++wanted_;
+    found_ += told ? 1 : 0;
+  }
+  if (!told) return;
+  if (true_m) {
+    errors_m_.push_back(std::abs(told_m - *true_m));
+  } else {
+    ++no_surface_;
+  }
+}
+
+Json RayTally::to_json() const {
+  const auto share = [](std::size_t part, std::size_t whole) {
+    return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(whole, 1));
+  };
+  const auto close = static_cast<std::size_t>(std::count_if(
+      errors_m_.begin(), errors_m_.end(), [](double error) { return error < kClose_m; }));
+  const DistanceStats stats = summarise(errors_m_);
+  return {{"points", stats.count + no_surface_},
+          {"mean", stats.mean},
+          {"rms", stats.rms},
+          {"p50", stats.p50},
+          {"p95", stats.p95},
+          {"max", stats.max},
+          {"within_5cm", share(close, errors_m_.size())},
+          {"completeness", share(found_, wanted_)},
+          {"no_surface", no_surface_}};
+}
+
+}  // namespace curlidar::bench

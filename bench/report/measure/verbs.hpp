@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What `report_measure VERB ...` measures; one file a verb. Each prints JSON, a line a measurement.
+#pragma once
+
+#include "curlidar/result.hpp"
+#include "report/measure/arguments.hpp"
+
+namespace curlidar::bench {
+
+// one_to_one.cpp: the gridded cloud coded by the codecs of the paper's first table.
+Status one_to_one(const Arguments& arguments);
+// truth.cpp: between the rows of a simulated scan, against exact truth.
+Status truth(const Arguments& arguments);
+// held_out.cpp: between the coded rings of a scan, against the rings that were left out.
+Status held_out(const Arguments& arguments);
+// timing.cpp: CPU time of the codecs, and of the stages of the paper's.
+Status timing(const Arguments& arguments);
+
+}  // namespace curlidar::bench
