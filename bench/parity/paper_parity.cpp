@@ -14,11 +14,13 @@
 #include "curlidar/codec.hpp"
 #include "curlidar/compare.hpp"
 #include "curlidar/io.hpp"
-#include "curlidar/paper.hpp"
+#include "report/measure/inputs.hpp"
 
 namespace {
 
 using namespace curlidar;
+using bench::gridded;
+using bench::in_range;
 
 constexpr double kTolerance = 1.05;
 
@@ -64,14 +66,6 @@ std::string verdict(double ours, double reference) {
   return ours <= reference * kTolerance ? "yes" : "NO";
 }
 
-/// The scan as the paper grids it: the cloud that its errors are measured against.
-Result<Cloud> gridded(const Cloud& scan, EncodeSettings settings) {
-  settings.paper.upsample_rows = settings.paper.upsample_columns = 1;
-  Result<Upsampled> grid = upsample_scan(scan, settings);
-  if (!grid) return grid.error();
-  return std::move(grid->cloud);
-}
-
 bool print_densities(const Reference& reference, const DecodedScan& decoded, const Cloud& original,
                      const Cloud& raw) {
   bool holds = true;
@@ -95,16 +89,6 @@ bool print_densities(const Reference& reference, const DecodedScan& decoded, con
         far->b_to_a.mean);
   }
   return holds;
-}
-
-/// The raw returns within the range limits of the file.
-Cloud in_range(const Cloud& scan, const PaperSettings& settings) {
-  std::vector<std::uint32_t> kept;
-  for (std::uint32_t i = 0; i < scan.size(); ++i) {
-    const double range = is_return(scan.positions[i]) ? norm(scan.positions[i]) : 0;
-    if (range >= settings.min_range_m && range <= settings.max_range.metres) kept.push_back(i);
-  }
-  return select(scan, kept);
 }
 
 int fail(const Error& error) {
@@ -150,8 +134,8 @@ int main(int argc, char** argv) {
     if (!encoded) return fail(encoded.error());
     const Result<DecodedScan> decoded = decode(encoded->bytes);
     if (!decoded) return fail(decoded.error());
-    holds = print_densities(reference, *decoded, *original, in_range(*scan, *decoded->paper)) &&
-            holds;
+    holds =
+        print_densities(reference, *decoded, *original, in_range(*scan, *decoded->paper)) && holds;
     const EncodeReport& r = encoded->report;
     const std::string ok = verdict(r.cp_paper_percent, reference.cp_percent);
     holds = holds && ok != "NO";

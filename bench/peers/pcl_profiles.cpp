@@ -5,8 +5,9 @@
 #include <pcl/point_types.h>
 
 #include <array>
-#include <ctime>
 #include <sstream>
+
+#include "peers/peers.hpp"
 
 namespace curlidar::bench {
 namespace {
@@ -16,16 +17,13 @@ using Points = pcl::PointCloud<pcl::PointXYZ>;
 
 constexpr bool kStatistics = false;
 
-constexpr std::array<pcl::io::compression_Profiles_e, kPclProfiles.size()> kCodes{pcl::io::LOW_RES_ONLINE_COMPRESSION_WITHOUT_COLOR,
-                               pcl::io::MED_RES_ONLINE_COMPRESSION_WITHOUT_COLOR,
-                               pcl::io::HIGH_RES_ONLINE_COMPRESSION_WITHOUT_COLOR,
-                               pcl::io::LOW_RES_OFFLINE_COMPRESSION_WITHOUT_COLOR,
-                               pcl::io::MED_RES_OFFLINE_COMPRESSION_WITHOUT_COLOR,
-                               pcl::io::HIGH_RES_OFFLINE_COMPRESSION_WITHOUT_COLOR};
-
-double ms_since(std::clock_t begin) {
-  return 1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-}
+constexpr std::array<pcl::io::compression_Profiles_e, kPclProfiles.size()> kCodes{
+    pcl::io::LOW_RES_ONLINE_COMPRESSION_WITHOUT_COLOR,
+    pcl::io::MED_RES_ONLINE_COMPRESSION_WITHOUT_COLOR,
+    pcl::io::HIGH_RES_ONLINE_COMPRESSION_WITHOUT_COLOR,
+    pcl::io::LOW_RES_OFFLINE_COMPRESSION_WITHOUT_COLOR,
+    pcl::io::MED_RES_OFFLINE_COMPRESSION_WITHOUT_COLOR,
+    pcl::io::HIGH_RES_OFFLINE_COMPRESSION_WITHOUT_COLOR};
 
 }  // namespace
 
@@ -37,20 +35,20 @@ PclStream pcl_encode(const Cloud& cloud, std::size_t profile) {
   }
   Coder coder(kCodes.at(profile), kStatistics);
   std::stringstream stream;
-  const std::clock_t begin = std::clock();
+  CpuTimer timer;
   coder.encodePointCloud(input, stream);
-  const double encode_ms = ms_since(begin);
+  const double encode_ms = timer.lap_ms();
   return {stream.str(), encode_ms};
 }
 
-PclCloud pcl_decode(const PclStream& stream, std::size_t profile) {
+PclDecoded pcl_decode(const PclStream& stream, std::size_t profile) {
   Coder coder(kCodes.at(profile), kStatistics);
   std::stringstream bytes(stream.bytes);
   Points::Ptr points(new Points);
-  const std::clock_t begin = std::clock();
+  CpuTimer timer;
   coder.decodePointCloud(bytes, points);
-  PclCloud out;
-  out.decode_ms = ms_since(begin);
+  PclDecoded out;
+  out.decode_ms = timer.lap_ms();
   for (const pcl::PointXYZ& p : *points) out.cloud.positions.push_back({p.x, p.y, p.z});
   out.cloud.width = static_cast<std::uint32_t>(out.cloud.size());
   return out;

@@ -19,7 +19,7 @@ EncodeSettings compact_of_image(double error_m);
 /// Every return by the compact codec at the target; one thread, no attributes, no index.
 EncodeSettings compact_of_scan(CompactTarget target, double value);
 
-std::string paper_setting(Profile profile);   ///< "degree 64", "S 2x2, P_r 4", "S 1x1, P_r 4"
-std::string error_setting(double error_m);    ///< "5 mm", "2 cm"
+std::string paper_setting(Profile profile);  ///< "degree 64", "S 2x2, P_r 4", "S 1x1, P_r 4"
+std::string error_setting(double error_m);   ///< "5 mm", "2 cm"
 
 }  // namespace curlidar::bench

@@ -30,16 +30,37 @@ std::string why_not(const Detection& detection, std::uint32_t every) {
   return {};
 }
 
-void predict(const Method& method, const std::vector<Vec3>& held_out, const RangeLimits& limits) {
+/// Ranges that a method tells in the directions of the points; nothing without a sampler.
+std::vector<double> predict(const Method& method, const std::vector<Vec3>& points) {
+  std::vector<double> ranges;
+  if (!method.sampler) return ranges;
+  for (const Vec3& p : points) ranges.push_back(method.sampler->range(p * (1 / norm(p))));
+  return ranges;
+}
+
+/// Which of the points every method tells a range of within the limits.
+std::vector<bool> told_by_all(const std::vector<std::vector<double>>& predictions,
+                              std::size_t points, const RangeLimits& limits) {
+  std::vector<bool> told(points, true);
+  for (const std::vector<double>& ranges : predictions) {
+    for (std::size_t i = 0; i < ranges.size(); ++i) told[i] = told[i] && limits.hold(ranges[i]);
+  }
+  return told;
+}
+
+void print_errors(const Method& method, const std::vector<double>& ranges,
+                  const std::vector<Vec3>& held_out, const std::vector<bool>& common,
+                  const RangeLimits& limits) {
   Json line = method.header();
   if (method.sampler) {
-    RayTally tally(limits);
-    for (const Vec3& p : held_out) {
-      const double range = norm(p);
-      tally.add(method.sampler->range(p * (1 / range)), range);
+    RayTally all(limits), shared(limits);
+    for (std::size_t i = 0; i < held_out.size(); ++i) {
+      all.add(ranges[i], norm(held_out[i]));
+      if (common[i]) shared.add(ranges[i], norm(held_out[i]));
     }
-    line.update(tally.to_json());
+    line.update(to_json(all.errors()));
     line.erase("no_surface");  // returns only tell where there is one
+    line["common"] = to_json(shared.errors().stats);
   }
   print_line(line);
 }
@@ -99,9 +120,19 @@ Status held_out(const Arguments& arguments) {
               {"returns_held_out", split.held_out.size()},
               {"min_range_m", limits.min_m},
               {"max_range_m", limits.max_m}});
-  const std::vector<Method> methods = make_methods(
-      {&split.coded, paper, split.sensor, split.ring_of_point, split.elevations});
-  for (const Method& method : methods) predict(method, split.held_out, limits);
+  const std::vector<Method> methods =
+      make_methods({.cloud = &split.coded,
+                    .paper = paper,
+                    .compact_sensor = split.sensor,  // or it might find the whole sensor again
+                    .ring_of_point = split.ring_of_point,
+                    .ring_elevations = split.elevations,
+                    .columns = split.sensor.columns});
+  std::vector<std::vector<double>> predictions;
+  for (const Method& method : methods) predictions.push_back(predict(method, split.held_out));
+  const std::vector<bool> common = told_by_all(predictions, split.held_out.size(), limits);
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    print_errors(methods[i], predictions[i], split.held_out, common, limits);
+  }
   return {};
 }
 

@@ -18,8 +18,8 @@ struct RingSplit {
   std::vector<Vec3> held_out;                ///< returns of the rings between them
 };
 
-/// Keeps every `every`-th ring. Rings below the last kept one lie between nothing and are in neither
-/// part. The detection must be that of the cloud.
+/// Keeps every `every`-th ring. Rings below the last kept one lie between nothing and are in
+/// neither part. The detection must be that of the cloud.
 RingSplit split_rings(const Cloud& cloud, const Detection& detection, std::uint32_t every);
 
 }  // namespace curlidar::bench

@@ -65,25 +65,28 @@ Json Method::header() const {
   return json;
 }
 
-std::vector<Method> make_methods(const MethodInput& input) {
+std::vector<Method> paper_methods(const Cloud& cloud, EncodeSettings settings) {
   std::vector<Method> methods;
   for (const auto& [rows, columns] : {std::pair{1u, 1u}, {2u, 1u}, {2u, 2u}}) {
-    EncodeSettings settings = input.paper;
     settings.paper.upsample_rows = rows;
     settings.paper.upsample_columns = columns;
     methods.push_back(
-        coded_method("paper", fmt::format("S {}x{}", rows, columns), *input.cloud, settings));
+        coded_method("paper", fmt::format("S {}x{}", rows, columns), cloud, settings));
   }
+  return methods;
+}
+
+std::vector<Method> make_methods(const MethodInput& input) {
+  std::vector<Method> methods = paper_methods(*input.cloud, input.paper);
   for (const auto& [target, value, setting] :
        {std::tuple{CompactTarget::error, kCompactError_m, "5 cm"},
         {CompactTarget::bits_per_point, kCompactBits, "1 bit a point"}}) {
     EncodeSettings settings = compact_of_scan(target, value);
-    settings.sensor = input.sensor;
+    settings.sensor = input.compact_sensor;
     methods.push_back(coded_method("compact", setting, *input.cloud, settings));
   }
-  const auto samples =
-      std::make_shared<const RingSamples>(input.cloud->positions, input.ring_of_point,
-                                          input.ring_elevations, input.sensor.columns);
+  const auto samples = std::make_shared<const RingSamples>(
+      input.cloud->positions, input.ring_of_point, input.ring_elevations, input.columns);
   methods.push_back(sample_method("linear", samples, Mixing::linear));
   methods.push_back(sample_method("edge-aware", samples, Mixing::edge_aware));
   return methods;
@@ -103,22 +106,27 @@ void RayTally::add(double told_m, std::optional<double> true_m) {
   }
 }
 
-Json RayTally::to_json() const {
+RayErrors RayTally::errors() const {
   const auto share = [](std::size_t part, std::size_t whole) {
     return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(whole, 1));
   };
   const auto close = static_cast<std::size_t>(std::count_if(
       errors_m_.begin(), errors_m_.end(), [](double error) { return error < kClose_m; }));
-  const DistanceStats stats = summarise(errors_m_);
-  return {{"points", stats.count + no_surface_},
-          {"mean", stats.mean},
-          {"rms", stats.rms},
-          {"p50", stats.p50},
-          {"p95", stats.p95},
-          {"max", stats.max},
-          {"within_5cm", share(close, errors_m_.size())},
-          {"completeness", share(found_, wanted_)},
-          {"no_surface", no_surface_}};
+  RayErrors errors;
+  errors.points = errors_m_.size() + no_surface_;
+  errors.stats = summarise(errors_m_);
+  errors.within_5cm = share(close, errors_m_.size());
+  errors.completeness = share(found_, wanted_);
+  errors.no_surface = no_surface_;
+  return errors;
+}
+
+Json to_json(const RayErrors& errors) {
+  return {{"points", errors.points},         {"mean", errors.stats.mean},
+          {"rms", errors.stats.rms},         {"p50", errors.stats.p50},
+          {"p95", errors.stats.p95},         {"max", errors.stats.max},
+          {"within_5cm", errors.within_5cm}, {"completeness", errors.completeness},
+          {"no_surface", errors.no_surface}};
 }
 
 }  // namespace curlidar::bench

@@ -28,13 +28,17 @@ struct Method {
 /// What the methods are made of.
 struct MethodInput {
   const Cloud* cloud = nullptr;
-  EncodeSettings paper;  ///< of Profile::paper, upsampling left open
-  SensorProfile sensor;  ///< that the cloud's returns belong to
+  EncodeSettings paper;                         ///< of Profile::paper, upsampling left open
+  std::optional<SensorProfile> compact_sensor;  ///< for the compact codec; else it finds its own
+  /// For interpolation: rings, their elevations as seen from the origin, columns of a turn.
   std::vector<std::uint16_t> ring_of_point;
-  std::vector<double> ring_elevations;  ///< as seen from the origin
+  std::vector<double> ring_elevations;
+  std::uint32_t columns = 0;
 };
 
-/// The paper's S = 1x1, 2x1, 2x2; compact at 5 cm and at 1 bit a point with every return; linear and
+/// The paper's S = 1x1, 2x1, 2x2, with the other settings as given.
+std::vector<Method> paper_methods(const Cloud& cloud, EncodeSettings settings);
+/// These; compact at 5 cm and at 1 bit a point with every return; linear and
 /// edge-aware interpolation.
 std::vector<Method> make_methods(const MethodInput& input);
 
@@ -42,6 +46,18 @@ struct RangeLimits {
   double min_m = 0, max_m = 0;
   bool hold(double range_m) const { return range_m >= min_m && range_m <= max_m; }
 };
+
+/// What came of a set of rays.
+struct RayErrors {
+  std::size_t points = 0;
+  DistanceStats stats;    ///< of the points whose ray meets a surface, metres along the ray
+  double within_5cm = 0;  ///< share of these points
+  double completeness =
+      0;  ///< share with a point of the rays that meet a surface within the limits
+  std::size_t no_surface = 0;  ///< points whose ray meets none
+};
+/// With points, mean, rms, p50, p95, max.
+Json to_json(const RayErrors& errors);
 
 /// Errors along rays. Ranges told outside the limits are as good as none; every other one counts,
 /// wherever the surface is.
@@ -51,9 +67,7 @@ class RayTally {
 
   /// `true_m` is the range of the surface that the ray meets, nothing if it meets none.
   void add(double told_m, std::optional<double> true_m);
-  /// points, mean, rms, p50, p95, max, within_5cm, completeness (share of the rays which meet a
-  /// surface within the limits that got a point), no_surface.
-  Json to_json() const;
+  RayErrors errors() const;
 
  private:
   RangeLimits limits_;

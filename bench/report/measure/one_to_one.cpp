@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's first table: its gridded cloud coded by every codec, errors in both directions against
-// that cloud and against the raw returns within the range limits.
+// The paper's first table: its gridded cloud coded by every codec, errors in both directions
+// against that cloud and against the raw returns within the range limits.
 #include <functional>
 #include <optional>
 #include <string>
@@ -86,18 +86,16 @@ Result<Outcome> compact_outcome(const Cloud& grid, double error_m) {
 /// Its percentage is that of PCL's own statistics: of coordinates as float32.
 Outcome pcl_outcome(const Cloud& grid, std::size_t points, std::size_t profile) {
   const PclStream stream = pcl_encode(grid, profile);
-  const double cp = 100 * static_cast<double>(stream.bytes.size()) /
-                    (12.0 * static_cast<double>(points));
-  return {"pcl", kPclProfiles[profile], stream.bytes.size(), cp,
-          pcl_decode(stream, profile).cloud};
+  const double cp =
+      100 * static_cast<double>(stream.bytes.size()) / (12.0 * static_cast<double>(points));
+  return {"pcl", kPclProfiles[profile], stream.bytes.size(), cp, pcl_decode(stream, profile).cloud};
 }
 #endif
 
 Status print_pcl(const Originals& originals) {
   for (std::size_t profile = 0; profile < kPclProfiles.size(); ++profile) {
 #ifdef CURLIDAR_BENCH_HAS_PCL
-    CURLIDAR_TRY(
-        print_outcome(pcl_outcome(originals.grid, originals.points, profile), originals));
+    CURLIDAR_TRY(print_outcome(pcl_outcome(originals.grid, originals.points, profile), originals));
 #else
     print_skipped("pcl", kPclProfiles[profile], kNoPcl);
 #endif

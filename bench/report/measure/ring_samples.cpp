@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "curlidar/cloud.hpp"
+
 namespace curlidar::bench {
 namespace {
 

@@ -18,9 +18,9 @@ enum class Mixing {
 
 /// The raw samples of a scan on their rings. In a direction the two samples on either side count on
 /// the ring above and on the ring below: first along each ring by azimuth, then across by
-/// elevation. Samples more than 1.5 columns away in azimuth do not count; of two rings one must have
-/// a sample, and where only one has, it must be the nearer one. Nothing lies beyond the outermost
-/// rings.
+/// elevation. Samples more than 1.5 columns away in azimuth do not count; of two rings one must
+/// have a sample, and where only one has, it must be the nearer one. Nothing lies beyond the
+/// outermost rings.
 class RingSamples {
  public:
   /// `ring_of_point[i]` is the ring of positions[i], in 0 .. elevations.size() - 1 from the top;

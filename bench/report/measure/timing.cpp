@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The paper's tables of time: its 1:1-tuned codec beside PCL's octree, and its default codec stage by
-// stage; with the compact codec and a copy of the cloud for scale. CPU milliseconds on one thread,
-// medians over the runs of this process.
+// The paper's tables of time: its 1:1-tuned codec beside PCL's octree, and its default codec stage
+// by stage; with the compact codec and a copy of the cloud for scale. CPU milliseconds on one
+// thread, medians over the runs of this process.
 #include <cstring>
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,8 +14,8 @@
 
 #include "base/try.hpp"
 #include "peers/pcl_profiles.hpp"
+#include "peers/peers.hpp"
 #include "report/measure/codecs.hpp"
-#include "report/measure/cpu_time.hpp"
 #include "report/measure/inputs.hpp"
 #include "report/measure/json.hpp"
 #include "report/measure/verbs.hpp"
@@ -25,12 +26,17 @@ namespace {
 /// Milliseconds of each stage, run after run.
 using Laps = std::map<std::string, std::vector<double>>;
 
+double median_of(std::vector<double> values) {
+  return percentile(values, 0.5);
+}
+
 /// Encodes and notes what each stage took: the codec reports them as they end.
 Result<Encoded> timed_encode(const Cloud& cloud, const EncodeSettings& settings, Laps& laps) {
   std::map<std::string, double> stages;
-  CpuWatch watch, whole;
-  Result<Encoded> encoded =
-      encode(cloud, settings, [&](const char* stage, double) { stages[stage] += watch.lap_ms(); });
+  CpuTimer lap, whole;
+  Result<Encoded> encoded = encode(cloud, settings, [&](std::string_view stage, double) {
+    stages[std::string(stage)] += lap.lap_ms();
+  });
   laps["encode"].push_back(whole.lap_ms());
   for (const auto& [stage, ms] : stages) laps[stage].push_back(ms);
   return encoded;
@@ -49,10 +55,10 @@ Status time_codec(const std::string& codec, const std::string& setting, const Cl
   Laps laps;
   for (std::uint32_t run = 0; run < runs; ++run) {
     CURLIDAR_TRY_ASSIGN(encoded, timed_encode(cloud, settings, laps));
-    CpuWatch watch;
+    CpuTimer timer;
     CURLIDAR_TRY_ASSIGN(decoded, decode(encoded.bytes));
     CURLIDAR_TRY_ASSIGN(back, reconstruct(decoded));
-    laps["decode"].push_back(watch.lap_ms());
+    laps["decode"].push_back(timer.lap_ms());
     // What precedes the fit: the other codecs are given the gridded cloud.
     const auto lap = [&](const char* stage) {
       return laps.contains(stage) ? laps[stage].back() : 0.0;
@@ -94,18 +100,18 @@ Status time_stages(const Scan& scan, std::uint32_t runs) {
   for (std::uint32_t run = 0; run < runs; ++run) {
     CURLIDAR_TRY_ASSIGN(encoded, timed_encode(scan.cloud, scan.settings, laps));
     laps["upsampling"].push_back(laps["mesh"].back() + laps["upsample"].back());
-    CpuWatch watch;
+    CpuTimer timer;
     CURLIDAR_TRY_ASSIGN(decoded, decode(encoded.bytes));
-    laps["parse"].push_back(watch.lap_ms());
+    laps["parse"].push_back(timer.lap_ms());
     for (const int rows : {1, 2, 4, 6, 8}) {
-      watch.lap_ms();
+      timer.lap_ms();
       CURLIDAR_TRY_ASSIGN(cloud, reconstruct(decoded, {.rows = static_cast<double>(rows)}));
-      laps[fmt::format("reconstruct {}", rows)].push_back(watch.lap_ms());
+      laps[fmt::format("reconstruct {}", rows)].push_back(timer.lap_ms());
       points[rows] = cloud.size();
     }
   }
-  for (const auto& [name, stage] : {std::pair{"upsampling", "upsampling"}, {"fit", "extraction"},
-                                    {"parse", "decoding"}}) {
+  for (const auto& [name, stage] :
+       {std::pair{"upsampling", "upsampling"}, {"fit", "extraction"}, {"parse", "decoding"}}) {
     print_line({{"kind", "stage"}, {"stage", stage}, {"ms", median_of(laps.at(name))}});
   }
   for (const auto& [rows, count] : points) {
@@ -126,12 +132,12 @@ void time_copy(std::size_t points, std::uint32_t runs) {
   volatile float seen = 0;  // or the compiler leaves the copies out
   std::vector<double> ms;
   for (std::uint32_t run = 0; run < runs; ++run) {
-    CpuWatch watch;
+    CpuTimer timer;
     for (int copy = 0; copy < kCopies; ++copy) {
       std::memcpy(to.data(), from.data(), from.size() * sizeof(float));
       seen = to[static_cast<std::size_t>(copy) % to.size()];
     }
-    ms.push_back(watch.lap_ms() / kCopies);
+    ms.push_back(timer.lap_ms() / kCopies);
   }
   static_cast<void>(seen);
   print_line({{"kind", "copy"}, {"bytes", from.size() * sizeof(float)}, {"ms", median_of(ms)}});
@@ -156,8 +162,9 @@ Status timing(const Arguments& arguments) {
   EncodeSettings compact = compact_of_image(kError_m);
   for (const std::uint32_t effort : {1u, compact.compact.effort}) {
     compact.compact.effort = effort;
-    CURLIDAR_TRY(time_codec("compact", fmt::format("{}, effort {}", error_setting(kError_m), effort),
-                            grid, compact, runs));
+    CURLIDAR_TRY(time_codec("compact",
+                            fmt::format("{}, effort {}", error_setting(kError_m), effort), grid,
+                            compact, runs));
   }
   CURLIDAR_TRY(time_stages(scan, runs));
   time_copy(points, runs);

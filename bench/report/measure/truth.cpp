@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reconstruction between the rows against exact truth: a simulated scan is coded and made denser,
-// each method on its own grid; every point on no coded row is compared with the surface that its own
-// ray meets.
+// each method on its own grid; every point on no coded row is compared with the surface that its
+// own ray meets.
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,14 +17,14 @@
 
 namespace curlidar::bench {
 
-Json judge(const Scene& scene, const std::vector<RayRange>& rays, const RangeLimits& limits) {
+RayErrors judge(const Scene& scene, const std::vector<RayRange>& rays, const RangeLimits& limits) {
   RayTally tally(limits);
   for (const RayRange& ray : rays) {
     Hit hit;
     const bool met = scene.cast({}, ray.direction, hit);
     tally.add(ray.range_m, met ? std::optional(hit.range_m) : std::nullopt);
   }
-  return tally.to_json();
+  return tally.errors();
 }
 
 Result<Simulated> simulate_scan(const std::string& scene, const std::string& sensor,
@@ -54,15 +54,19 @@ Result<RangeLimits> limits_of(const Cloud& cloud, const EncodeSettings& settings
 Status truth(const Arguments& arguments) {
   CURLIDAR_TRY_ASSIGN(factors, parse_factors(arguments.option("factors", "2,4,8")));
   CURLIDAR_TRY_ASSIGN(seed, arguments.number("seed", 1, 0, 1u << 30));
-  CURLIDAR_TRY_ASSIGN(simulated, simulate_scan(arguments.words[0], arguments.words[1],
-                                               arguments.words[2], seed));
+  CURLIDAR_TRY_ASSIGN(
+      simulated, simulate_scan(arguments.words[0], arguments.words[1], arguments.words[2], seed));
   CURLIDAR_TRY_ASSIGN(limits, limits_of(simulated.cloud, simulated.settings));
   print_line({{"returns", count_returns(simulated.cloud)},
               {"min_range_m", limits.min_m},
               {"max_range_m", limits.max_m}});
   const std::vector<Method> methods = make_methods(
-      {&simulated.cloud, simulated.settings, *simulated.settings.sensor,
-       simulated.rings.ring_of_point, simulated.rings.ring_elevations});
+      {.cloud = &simulated.cloud,
+       .paper = simulated.settings,
+       .compact_sensor = {},  // simulated beams start at the origin, those of profiles may not
+       .ring_of_point = simulated.rings.ring_of_point,
+       .ring_elevations = simulated.rings.ring_elevations,
+       .columns = simulated.settings.sensor->columns});
   for (const Method& method : methods) {
     if (!method.sampler) {
       print_line(method.header());
@@ -72,7 +76,7 @@ Status truth(const Arguments& arguments) {
       CURLIDAR_TRY_ASSIGN(rays, method.sampler->between_rows(factor));
       Json line = method.header();
       line["factor"] = factor;
-      line.update(judge(*simulated.scene, rays, limits));
+      line.update(to_json(judge(*simulated.scene, rays, limits)));
       print_line(line);
     }
   }

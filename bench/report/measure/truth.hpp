@@ -27,6 +27,6 @@ Result<Simulated> simulate_scan(const std::string& scene, const std::string& sen
 Result<RangeLimits> limits_of(const Cloud& cloud, const EncodeSettings& settings);
 
 /// Each ray against the surface that it meets.
-Json judge(const Scene& scene, const std::vector<RayRange>& rays, const RangeLimits& limits);
+RayErrors judge(const Scene& scene, const std::vector<RayRange>& rays, const RangeLimits& limits);
 
 }  // namespace curlidar::bench
