@@ -63,11 +63,17 @@ Json error_json(const GeometryError& error) {
 }
 
 Json images_json(const ImageMetrics& images) {
-  return {{"pixels", images.pixels},     {"valid_a", images.valid_a},
-          {"valid_b", images.valid_b},   {"valid_both", images.valid_both},
-          {"missed", images.missed},     {"invented", images.invented},
-          {"mask_iou", images.mask_iou}, {"mae_all", images.mae_all},
-          {"mae_both", images.mae_both}, {"rmse_both", images.rmse_both}};
+  return {{"pixels", images.pixels},
+          {"valid_a", images.valid_a},
+          {"valid_b", images.valid_b},
+          {"valid_both", images.valid_both},
+          {"missed", images.missed},
+          {"invented", images.invented},
+          {"mask_iou", images.mask_iou},
+          {"mae_all", images.mae_all},
+          {"mae_both", images.mae_both},
+          {"rmse_both", images.rmse_both},
+          {"chamfer_m2_all", images.chamfer_squared_all}};
 }
 
 Json quantiles_json(const Metrics& metrics) {
@@ -194,7 +200,8 @@ int run(const Options& options) {
   const Cloud b = load_cloud(options.b, format);
   const Metrics metrics = need(measure(a, b, options.metrics, options.common.threads));
   std::optional<ImageMetrics> images;
-  if (options.images) images = need(compare_images(a, b, options.image_ranges));
+  if (options.images)
+    images = need(compare_images(a, b, options.image_ranges, options.common.threads));
   if (!options.error_cloud.empty()) write_error_cloud(options, std::move(a), b);
 
   const Comparison& result = metrics.directed;

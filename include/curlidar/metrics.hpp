@@ -107,10 +107,14 @@ struct ImageMetrics {
   double mask_iou = 0;       ///< valid_both over pixels valid in either
   double mae_all = 0;        ///< m, over all pixels, an empty one being range 0 (TULIP's protocol)
   double mae_both = 0, rmse_both = 0;  ///< m, over pixels valid in both
+  /// m2: sum of the two mean squared distances to the nearest pixel's point, over all pixels, an
+  /// empty one being a point at the origin. It is what the published code of TULIP computes;
+  /// Metrics::chamfer_squared is over returns.
+  double chamfer_squared_all = 0;
 };
 /// Ranges of organised clouds of one shape, pixel by pixel. Errors: invalid_argument (a cloud is
 /// not organised, shapes differ, the limits of range make no sense). O(n).
 Result<ImageMetrics> compare_images(const Cloud& a, const Cloud& b,
-                                    const ImageSettings& settings = {});
+                                    const ImageSettings& settings = {}, std::size_t threads = 1);
 
 }  // namespace curlidar

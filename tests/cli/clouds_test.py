@@ -179,6 +179,8 @@ class CompareTest(CommandTest):
         self.assertAlmostEqual(images["mae_all"], (1 + 3 + 5) / 6, 12)
         self.assertAlmostEqual(images["mae_both"], 1 / 3, 12)
         self.assertAlmostEqual(images["rmse_both"], math.sqrt(1 / 3), 12)
+        # a: 1, 5 are 1 from a point of b; b: 2, 3 are 1 from one of a. The origin has its own.
+        self.assertAlmostEqual(images["chamfer_m2_all"], 2 / 6 + 2 / 6, 12)
         images = self.run_json("compare", "a.pcd", "b.pcd", "--images", "--min-range", 1.5,
                                "--max-range", 80)["images"]
         self.assertEqual((images["valid_a"], images["valid_b"]), (2, 3))

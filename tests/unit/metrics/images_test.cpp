@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "curlidar/metrics.hpp"
 #include "support/metric_clouds.hpp"
@@ -74,6 +76,44 @@ TEST(CompareImages, AgreesWithTheDefinition) {
   ASSERT_TRUE(metrics);
   EXPECT_NEAR(metrics->mae_all, sum / 640, 1e-12);
   EXPECT_DOUBLE_EQ(metrics->mask_iou, both / either);
+}
+
+/// The Chamfer distance of all pixels, the origin standing for the empty ones.
+double chamfer_of(const Cloud& a, const Cloud& b) {
+  const auto point = [](const Vec3& p) { return is_return(p) ? p : Vec3{}; };
+  double sum = 0;
+  for (const auto& [from, to] : {std::pair{&a, &b}, std::pair{&b, &a}}) {
+    for (const Vec3& p : from->positions) {
+      double best = kInf;
+      for (const Vec3& q : to->positions) {
+        const Vec3 d = point(p) - point(q);
+        best = std::min(best, dot(d, d));
+      }
+      sum += best;
+    }
+  }
+  return sum / static_cast<double>(a.size());
+}
+
+TEST(CompareImages, ChamferOfAllPixelsAgreesWithBruteForce) {
+  const Cloud far = image_of(std::vector<Vec3>(4, Vec3{3, 4, 0}), 2);
+  const Cloud none = image_of(std::vector<Vec3>(4, Vec3{}), 2);
+  EXPECT_DOUBLE_EQ(compare_images(far, none)->chamfer_squared_all, 50);
+  EXPECT_EQ(compare_images(none, none)->chamfer_squared_all, 0);
+  Cloud a = holey_cloud(640, 33, 0.3);
+  Cloud b = holey_cloud(640, 34, 0.1);
+  Cloud full = test::random_cloud(640, 35, 0.3);
+  for (Vec3& p : full.positions) p.z += 5;
+  a.height = b.height = full.height = 16;
+  a.width = b.width = full.width = 40;
+  for (const auto& [first, second] :
+       {std::pair{&a, &b}, std::pair{&full, &b}, std::pair{&a, &full}, std::pair{&full, &full}}) {
+    const auto metrics = compare_images(*first, *second);
+    const auto threaded = compare_images(*first, *second, {}, 3);
+    ASSERT_TRUE(metrics && threaded);
+    EXPECT_NEAR(metrics->chamfer_squared_all, chamfer_of(*first, *second), 1e-9);
+    EXPECT_EQ(metrics->chamfer_squared_all, threaded->chamfer_squared_all);
+  }
 }
 
 TEST(CompareImages, MeansOverNoPixelAreNotNumbers) {
