@@ -20,6 +20,7 @@ constexpr const char* kFooter = R"(Examples:
   curlidar render scan.curl --rows 8 --view birds-eye --extent 30
   curlidar render scan.curl --colour error --reference scan.pcd --max-value 0.2
   curlidar render scan.curl --view partition -o blocks.png   what the compact codec made of it
+  curlidar render scan.curl --view degrees -o degrees.png    patches of the paper's profiles
   curlidar render scans/*.bin -o pictures/ --size 640x480)";
 
 struct Options {
@@ -45,7 +46,8 @@ void parse_size(const std::string& text, RenderSettings& settings) {
 }
 
 bool shows_partition(const RenderSettings& settings) {
-  return settings.view == View::partition || settings.view == View::layers;
+  return settings.view == View::partition || settings.view == View::layers ||
+         settings.view == View::degrees;
 }
 
 RenderSettings render_settings(const Options& options) {
@@ -66,30 +68,43 @@ RenderSettings render_settings(const Options& options) {
   return settings;
 }
 
-/// The picture of a compact file's blocks and layers.
+/// Blocks of a compact file for the views partition and layers, patches of one of the paper's
+/// profiles for the view degrees.
+std::vector<PartitionBlock> blocks_of(const DecodedScan& scan, View view) {
+  std::vector<PartitionBlock> blocks;
+  if (view == View::degrees && !scan.paper_patches.empty()) {
+    for (const PaperPatch& patch : scan.paper_patches) {
+      blocks.push_back({patch.row, patch.column, patch.rows, patch.columns, patch.degree});
+    }
+  } else if (view != View::degrees && scan.compact) {
+    for (const CompactLeaf& leaf : scan.compact->leaves) {
+      blocks.push_back({leaf.row, leaf.column, leaf.rows, leaf.columns, leaf.layers});
+    }
+  } else {
+    throw Failure(
+        {ErrorCode::invalid_argument,
+         fmt::format("--view partition and layers show files of the compact profile, degrees those "
+                     "of the profiles paper and paper-1to1; this one is of profile {}",
+                     to_string(scan.profile))},
+        kExitInput);
+  }
+  return blocks;
+}
+
+/// The picture of a file's blocks.
 Image partition_picture(const std::string& path, const RenderSettings& settings,
                         std::size_t threads, std::size_t& points) {
   DecodeOptions decoding;
   decoding.partition = true;
   decoding.threads = threads;
   const DecodedScan scan = load_curl(path, decoding);
-  if (!scan.compact) {
-    throw Failure(
-        {ErrorCode::invalid_argument,
-         fmt::format("--view partition and layers show files of the compact profile; this "
-                     "one is of profile {}",
-                     to_string(scan.profile))},
-        kExitInput);
-  }
-  std::vector<PartitionBlock> blocks;
-  for (const CompactLeaf& leaf : scan.compact->leaves) {
-    blocks.push_back({leaf.row, leaf.column, leaf.rows, leaf.columns, leaf.layers});
-  }
+  const std::vector<PartitionBlock> blocks = blocks_of(scan, settings.view);
   ReconstructSettings plain;
   plain.organised = true;
   const Cloud cloud = need(reconstruct(scan, plain));
   points = scan.coded_returns;
-  return need(render_partition(cloud, blocks, scan.compact->layer, settings));
+  const std::vector<std::uint8_t> none;
+  return need(render_partition(cloud, blocks, scan.compact ? scan.compact->layer : none, settings));
 }
 
 int run(const Options& options) {
@@ -128,7 +143,8 @@ int run(const Options& options) {
 void add_picture_options(CLI::App& app, Options& options) {
   app.add_option(
          "--view", options.view,
-         "range-image, birds-eye, perspective, or of a compact .curl file partition or layers")
+         "range-image, birds-eye, perspective, of a compact .curl file partition or layers, of "
+         "a file of the paper's profiles degrees")
       ->capture_default_str();
   app.add_option("--colour,--color", options.colour, "range, height, intensity or error")
       ->capture_default_str();

@@ -11,6 +11,7 @@ import importlib
 import importlib.util
 import os
 import shlex
+import shutil
 import sys
 import tomllib
 import traceback
@@ -19,12 +20,22 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent)]
-from frame import files, machine, markdown, scans  # noqa: E402
+from frame import interpreter  # noqa: E402
+
+interpreter.ensure_matplotlib()
+from frame import check, files, html, machine, markdown, scans  # noqa: E402
 from frame.cells import exact  # noqa: E402
 from frame.context import Context  # noqa: E402
 
 SECTIONS = ("one_to_one", "continuous", "upsampling", "maps", "timing", "rate_distortion",
             "metrics", "pictures")
+
+
+PROGRAMS = ("report_measure", "rate_distortion")
+
+
+class Stop(Exception):
+    """The report cannot be made, and why."""
 
 
 @dataclass
@@ -38,7 +49,6 @@ class Part:
 
 
 def arguments():
-    data = os.environ.get("CURLIDAR_DATA", HERE.parents[1] / "../shared/data")
     parser = argparse.ArgumentParser(
         prog=os.environ.get("CURLIDAR_REPORT_NAME", "report.py"), description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -53,33 +63,60 @@ def arguments():
     parser.add_argument("--all", action="store_true", help="every scan of CURLIDAR_DATA")
     parser.add_argument("--sections", metavar="LIST", default=",".join(SECTIONS),
                         help=f"only these, of {','.join(SECTIONS)}")
-    parser.add_argument("--data", type=Path, default=Path(data), help=argparse.SUPPRESS)
-    parser.add_argument("--curlidar", type=Path, required=True, help=argparse.SUPPRESS)
-    parser.add_argument("--bin", type=Path, required=True, help=argparse.SUPPRESS)
+    parser.add_argument("--check", action="store_true",
+                        help="also check that the tables are complete and sane; exit code 1 if not")
     options = parser.parse_args()
+    options.name = parser.prog
     options.sections = options.sections.split(",")
     if unknown := set(options.sections) - set(SECTIONS):
         parser.error(f"no section is named {unknown.pop()!r}")
+    if options.simulated and options.scans:
+        parser.error("--simulated leaves real scans out, but some are named")
     return options
 
 
+def programs():
+    """(the command, folder of the measuring programs), as whoever starts this says."""
+    curlidar = shutil.which(os.environ.get("CURLIDAR", "curlidar"))
+    if curlidar is None:
+        raise Stop("the command curlidar was not found: start this as ./dev report or curlidar "
+                   "report, or name it in CURLIDAR")
+    curlidar = Path(curlidar).resolve()
+    folder = Path(os.environ.get("CURLIDAR_REPORT_BIN", curlidar.parent)).resolve()
+    for name in PROGRAMS:
+        if not os.access(folder / name, os.X_OK):
+            raise Stop(f"{folder / name} was not found: build the preset bench (./dev report does)")
+    return curlidar, folder
+
+
+def real_scans(options):
+    if options.simulated:
+        return []
+    data = Path(os.environ.get("CURLIDAR_DATA", HERE.parents[1] / "../shared/data")).resolve()
+    found = scans.chosen(options.scans, data, options.all, options.quick)
+    if not found:
+        print(f"No MANIFEST.tsv in {data}: simulated scenes only (CURLIDAR_DATA names the folder "
+              "of the scans).", file=sys.stderr)
+    return found
+
+
 def context_of(options):
-    real = [] if options.simulated else scans.chosen(
-        options.scans, options.data.resolve(), options.all, options.quick)
+    curlidar, folder = programs()
     scenes = scans.QUICK_SCENES if options.quick else scans.SCENES
     published = tomllib.loads((HERE / "published.toml").read_text(encoding="utf-8"))
-    return Context(options.out, options.curlidar.resolve(), options.bin.resolve(), real,
-                   list(scenes), published, options.quick, options.all)
+    options.out.mkdir(parents=True, exist_ok=True)
+    return Context(options.out.resolve(), curlidar, folder, real_scans(options), list(scenes),
+                   published, options.quick, options.all)
 
 
-def part_of(context, name):
+def part_of(context, name, section, command):
     """Measures a section and asks for its tables and figures. One that fails costs only itself."""
-    section = importlib.import_module(f"sections.{name}")
     part = Part(name, section.TITLE)
     try:
         section.measure(context)
         part.tables = section.tables(context)
         for table in part.tables:
+            table.command = table.command or command
             columns = [column.key for column in table.columns]
             files.write_csv(context.out / "tables" / f"{table.id}.csv", columns,
                             [[exact(row[key]) for key in columns] for row in table.rows])
@@ -90,23 +127,53 @@ def part_of(context, name):
     return part
 
 
+def command_of(options, section=None):
+    """What makes this report, or a section of it, again; of files only their names."""
+    words = [Path(name).name for name in options.scans]
+    words += [f"--{name}" for name in ("quick", "simulated", "all") if getattr(options, name)]
+    if section or options.sections != list(SECTIONS):
+        words += ["--sections", section or ",".join(options.sections)]
+    return f"{options.name} {shlex.join(words)}".strip()
+
+
+def write_report(context, options, parts):
+    header = machine.header(context, command_of(options))
+    files.write(context.out / "report.md", markdown.page(header, parts))
+    page = html.page(header, parts, context.out / "figures")
+    files.write(context.out / "index.html", page)
+    return page
+
+
+def make(options):
+    context = context_of(options)
+    modules = [importlib.import_module(f"sections.{name}") for name in options.sections
+               if importlib.util.find_spec(f"sections.{name}")]
+    parts = []
+    for module in modules:
+        name = module.__name__.partition(".")[2]
+        context.progress(f"[{len(parts) + 1}/{len(modules)}] {module.TITLE}")
+        parts.append(part_of(context, name, module, command_of(options, name)))
+    page = write_report(context, options, parts)
+    wrong = check.report(context, parts, modules, page) if options.check else []
+    context.clean()
+    for line in wrong:
+        print(f"check: {line}", file=sys.stderr)
+    if options.check and not wrong:
+        print("check: nothing is wrong", file=sys.stderr)
+    print(f"{context.store.measured} measured, {context.store.reused} stored already. "
+          f"Report: {options.out / 'index.html'}", file=sys.stderr)
+    return 1 if wrong or any(part.failure for part in parts) else 0
+
+
 def main():
     options = arguments()
-    context = context_of(options)
-    command_line = shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])
-    parts = []
-    for name in options.sections:
-        if importlib.util.find_spec(f"sections.{name}") is None:
-            context.progress(f"{name}: not there yet")
-            continue
-        context.progress(f"== {name}")
-        parts.append(part_of(context, name))
-    header = machine.header(context, command_line)
-    files.write(context.out / "report.md", markdown.page(header, parts))
-    context.clean()
-    context.progress(f"{context.store.measured} measured, {context.store.reused} stored already. "
-                     f"Report: {context.out / 'report.md'}")
-    return 1 if any(part.failure for part in parts) else 0
+    try:
+        return make(options)
+    except (Stop, scans.NoScans) as error:
+        print(f"report: {error}", file=sys.stderr)
+    except OSError as error:
+        print(f"report: {error.filename or options.out}: {error.strerror}", file=sys.stderr)
+    return 4
 
 
 if __name__ == "__main__":

@@ -165,7 +165,7 @@ struct DecodeOptions {
   std::optional<ScanRegion> region{};
   /// Takes files that are cut off as far as they go; DecodedScan::missing says what is not there.
   bool allow_truncated = false;
-  /// Compact files: keep what `CompactContents::leaves` and `layer` tell.
+  /// Keep what `CompactContents::leaves` and `layer`, or `DecodedScan::paper_patches` tell.
   bool partition = false;
   std::size_t threads = 1;  ///< 0 = all cores
 };
@@ -175,6 +175,12 @@ struct CompactLeaf {
   std::uint32_t row = 0, column = 0, rows = 0, columns = 0;
   std::uint32_t layers = 1;
   bool residual = false;
+};
+
+/// A patch of the paper's profiles that is fitted.
+struct PaperPatch {
+  std::uint32_t row = 0, column = 0, rows = 0, columns = 0;  ///< cells of the coded lattice
+  std::uint32_t degree = 0;
 };
 
 /// What is special about a compact file.
@@ -220,6 +226,7 @@ struct DecodedScan {
   Profile profile = Profile::compact;
   SensorProfile sensor;  ///< compact files tell its name, if metadata are kept, and its elevations
   std::optional<PaperSettings> paper;      ///< of the paper's profiles
+  std::vector<PaperPatch> paper_patches;   ///< of those with patches, on request
   std::optional<CompactContents> compact;  ///< of Profile::compact
   std::shared_ptr<const Field> field;
   /// Files with every return: the cloud as it was encoded, slot by slot. Not there if only a part

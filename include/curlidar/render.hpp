@@ -25,11 +25,14 @@ enum class View {
   perspective,
   partition,  ///< of a compact file, over its range image: see render_partition
   layers,     ///< the same, each return in the colour of its layer
+  degrees,  ///< of a file of the paper's profiles: each return in the colour of its patch's degree
 };
 enum class ColourBy { range, height, intensity, error };
-/// "range-image", "birds-eye", "perspective", "partition", "layers"
+/// "range-image", "birds-eye", "perspective", "partition", "layers",
+/// "degrees"
 Result<View> view_by_name(std::string_view name);
-Result<ColourBy> colour_by_name(std::string_view name);     ///< "range", "height", "intensity", "error"
+Result<ColourBy> colour_by_name(
+    std::string_view name);  ///< "range", "height", "intensity", "error"
 
 struct RenderSettings {
   View view = View::perspective;
@@ -38,13 +41,13 @@ struct RenderSettings {
   /// Values mapped to the two ends of the colour map; by default the 2nd and 98th percentile, for
   /// errors 0 and the 98th.
   std::optional<double> value_min, value_max;
-  double extent_m = 0;     ///< half width of the bird's-eye view; 0 = fits the 95th percentile
+  double extent_m = 0;  ///< half width of the bird's-eye view; 0 = fits the 95th percentile
   double yaw_deg = -145, pitch_deg = 28;  ///< perspective camera, orbiting the sensor
   double distance_m = 0;                  ///< of that camera; 0 = fits the cloud
   double point_size_px = 0;               ///< 0 = by density
   /// Returns higher than this are left out: it takes the ceiling off a room.
   std::optional<double> clip_above_m;
-  std::string title;                      ///< drawn in the corner if not empty
+  std::string title;  ///< drawn in the corner if not empty
 };
 
 /// Draws the returns of a cloud. For ColourBy::error `values` holds one value per slot (metres);
@@ -58,14 +61,15 @@ Result<Image> render(const Cloud& cloud, const RenderSettings& settings,
 /// A block of an organised cloud's cells and the number of surfaces in it.
 struct PartitionBlock {
   std::uint32_t row = 0, column = 0, rows = 0, columns = 0;
-  std::uint32_t layers = 1;
+  std::uint32_t layers = 1;  ///< View::degrees: its degree
 };
 
 /// Draws what a codec did to an organised cloud, whose azimuth grows from column to column: the
 /// blocks' outlines by their layers and, behind them, ranges (View::partition) or the layer of each
-/// return (View::layers). `layer` holds one number for each slot. The turn is cut into stripes, from
-/// the back by the left to the front and on, so that a cell is some pixels wide; the height follows.
-/// Errors: another view, a cloud that is not organised, sizes that do not match.
+/// return (View::layers), or the degrees of the blocks (View::degrees). `layer` holds one number
+/// for each slot; degrees do not need it and take an empty one. The turn is cut into stripes, from
+/// the back by the left to the front and on, so that a cell is some pixels wide; the height
+/// follows. Errors: another view, a cloud that is not organised, sizes that do not match.
 Result<Image> render_partition(const Cloud& grid, const std::vector<PartitionBlock>& blocks,
                                const std::vector<std::uint8_t>& layer,
                                const RenderSettings& settings);

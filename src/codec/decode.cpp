@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -17,10 +18,34 @@
 namespace curlidar {
 namespace {
 
+/// The fitted patches with their places on the coded lattice and their degrees, which follow from
+/// the number of their coefficients.
+std::vector<PaperPatch> places_of(const std::vector<PatchFit>& patches, const PatchGrid& grid,
+                                  const Lattice& lattice, std::uint32_t side) {
+  std::vector<PaperPatch> places;
+  for (std::size_t i = 0; i < grid.rows(); ++i) {
+    std::map<std::size_t, PatchBasis>
+        bases;  // of this row's patches, by the width of their windows
+    for (std::size_t j = 0; j < grid.columns(); ++j) {
+      const std::size_t count = patches[i * grid.columns() + j].coefficients.size();
+      if (count == 0) continue;
+      const std::size_t width = grid.window(i, j).width();
+      auto basis = bases.find(width);
+      if (basis == bases.end()) basis = bases.emplace(width, grid.make_basis(i, j)).first;
+      const auto row = static_cast<std::uint32_t>(i) * side;
+      const auto column = static_cast<std::uint32_t>(j) * side;
+      places.push_back({row, column, std::min(side, lattice.rows() - row),
+                        std::min(side, lattice.columns() - column),
+                        static_cast<std::uint32_t>(basis->second.degree_with(count))});
+    }
+  }
+  return places;
+}
+
 Result<std::shared_ptr<const Field>> read_field(const std::vector<Chunk>& chunks,
                                                 const Parameters& parameters,
                                                 const Lattice& lattice, CellMasks masks,
-                                                const DecodeLimits& limits, DecodedScan& scan) {
+                                                const DecodeOptions& options, DecodedScan& scan) {
   if (parameters.profile == Profile::paper_global) {
     CURLIDAR_TRY_ASSIGN(chunk, require_chunk(chunks, ChunkType::global));
     CURLIDAR_TRY_ASSIGN(coefficients, read_global(chunk, parameters.paper.global_degree));
@@ -33,16 +58,20 @@ Result<std::shared_ptr<const Field>> read_field(const std::vector<Chunk>& chunks
   CURLIDAR_TRY(check_patches(parameters.paper, lattice));
   const PatchGrid grid(lattice, parameters.paper.upsample_rows, parameters.paper.upsample_columns,
                        parameters.paper.patch, parameters.paper.overlap);
-  CURLIDAR_TRY_ASSIGN(patches, read_patches(chunk, grid, limits.max_bytes));
+  CURLIDAR_TRY_ASSIGN(patches, read_patches(chunk, grid, options.limits.max_bytes));
   for (const PatchFit& patch : patches) {
     scan.coefficients += patch.coefficients.size();
     scan.patches += patch.coefficients.empty() ? 0 : 1;
+  }
+  if (options.partition) {
+    scan.paper_patches = places_of(patches, grid, lattice, parameters.paper.patch);
   }
   return std::shared_ptr<const Field>(std::make_shared<PatchField>(
       PaperModel{lattice, parameters.paper, std::move(masks), std::move(patches)}));
 }
 
-Result<DecodedScan> decode_paper(const std::vector<Chunk>& chunks, const DecodeLimits& limits) {
+Result<DecodedScan> decode_paper(const std::vector<Chunk>& chunks, const DecodeOptions& options) {
+  const DecodeLimits& limits = options.limits;
   CURLIDAR_TRY_ASSIGN(sensor_chunk, require_chunk(chunks, ChunkType::sensor));
   CURLIDAR_TRY_ASSIGN(sensor, read_sensor(sensor_chunk));
   CURLIDAR_TRY_ASSIGN(parameters_chunk, require_chunk(chunks, ChunkType::parameters));
@@ -75,7 +104,7 @@ Result<DecodedScan> decode_paper(const std::vector<Chunk>& chunks, const DecodeL
     scan.metadata = std::move(metadata);
   }
   CURLIDAR_TRY_ASSIGN(field,
-                      read_field(chunks, parameters, lattice, std::move(masks), limits, scan));
+                      read_field(chunks, parameters, lattice, std::move(masks), options, scan));
   scan.field = std::move(field);
   return scan;
 }
@@ -127,7 +156,7 @@ Result<DecodedScan> decode(std::span<const std::byte> bytes, const DecodeOptions
     return Error{ErrorCode::invalid_argument,
                  "only files of the compact profile can be decoded in part; this one has another"};
   }
-  CURLIDAR_TRY_ASSIGN(scan, decode_paper(container.chunks, options.limits));
+  CURLIDAR_TRY_ASSIGN(scan, decode_paper(container.chunks, options));
   note_cut(container, scan);
   return scan;
 }

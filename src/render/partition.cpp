@@ -53,6 +53,27 @@ Stripes lay_out(const Cloud& grid, int width, int top, int gap) {
   return s;
 }
 
+/// 255 where the returns have the colours of their ranges.
+using CellNumbers = std::vector<std::uint8_t>;
+
+/// Of each cell, the number of the colour of its block's degree.
+CellNumbers degree_numbers(const Cloud& grid, const std::vector<PartitionBlock>& blocks) {
+  CellNumbers numbers(grid.size(), 255);
+  for (const PartitionBlock& block : blocks) {
+    const std::uint64_t row_end =
+        std::min<std::uint64_t>(block.row + std::uint64_t{block.rows}, grid.height);
+    const std::uint64_t column_end =
+        std::min<std::uint64_t>(block.column + std::uint64_t{block.columns}, grid.width);
+    for (std::uint64_t row = block.row; row < row_end; ++row) {
+      for (std::uint64_t column = block.column; column < column_end; ++column) {
+        numbers[row * grid.width + column] =
+            static_cast<std::uint8_t>(std::clamp(block.layers, 1u, 4u) - 1);
+      }
+    }
+  }
+  return numbers;
+}
+
 void draw_cells(Canvas& canvas, const Stripes& s, const Cloud& grid,
                 const std::vector<std::uint8_t>& layer, const Scale& scale, bool layers) {
   constexpr float kDimmed = 0.75f;
@@ -71,9 +92,10 @@ void draw_cells(Canvas& canvas, const Stripes& s, const Cloud& grid,
 }
 
 /// Lines along the upper and left edges of a block's cells; neighbours draw the other edges.
-void outline(Canvas& canvas, const Stripes& s, const PartitionBlock& block) {
-  const Colour& colour = block.layers > 1 ? layer_colour(block.layers - 1) : kInk;
-  const float opacity = block.layers > 1 ? 0.95f : 0.55f;
+void outline(Canvas& canvas, const Stripes& s, const PartitionBlock& block, View view) {
+  const bool several = view != View::degrees && block.layers > 1;
+  const Colour& colour = several ? layer_colour(block.layers - 1) : kInk;
+  const float opacity = several ? 0.95f : view == View::degrees ? 0.25f : 0.55f;
   const auto row = static_cast<int>(block.row), column = static_cast<int>(block.column);
   const auto rows = static_cast<int>(block.rows), columns = static_cast<int>(block.columns);
   for (int j = column; j < std::min(column + columns, s.columns); ++j) {
@@ -87,13 +109,18 @@ void outline(Canvas& canvas, const Stripes& s, const PartitionBlock& block) {
   }
 }
 
-void draw_legend(Canvas& canvas, int y, int scale, bool layers) {
+std::string legend_text(View view, std::uint32_t i) {
+  if (view == View::layers) return fmt::format("layer {}", i + 1);
+  if (view == View::partition) return fmt::format("block of {} layer{}", i + 1, i == 0 ? "" : "s");
+  return fmt::format("degree {}{}", i + 1, i + 1 == kLayerColours.size() ? " or more" : "");
+}
+
+void draw_legend(Canvas& canvas, int y, int scale, View view) {
   int x = 4 * scale;
   for (std::uint32_t i = 0; i < kLayerColours.size(); ++i) {
-    const Colour colour = !layers && i == 0 ? kInk : layer_colour(i);
+    const Colour colour = view == View::partition && i == 0 ? kInk : layer_colour(i);
     canvas.fill(x, y + 2 * scale, 7 * scale, 7 * scale, colour);
-    const std::string text = layers ? fmt::format("layer {}", i + 1)
-                                    : fmt::format("block of {} layer{}", i + 1, i == 0 ? "" : "s");
+    const std::string text = legend_text(view, i);
     canvas.text(x + 10 * scale, y + 2 * scale, text, scale);
     x += 10 * scale + text_width(text, scale) + 10 * scale;
   }
@@ -109,9 +136,9 @@ Result<Canvas> draw_partition(const Cloud& grid, const std::vector<PartitionBloc
   const int pixel = font_scale(width);
   const int head = settings.title.empty() ? 0 : strip;
   const Stripes s = lay_out(grid, width, head, strip / 3);
-  const bool layers = settings.view == View::layers;
+  const bool ranges = settings.view == View::partition;
   const int legend_y = head + s.height();
-  const int height = legend_y + strip + (layers ? 0 : strip);
+  const int height = legend_y + strip + (ranges ? strip : 0);
   if (height > kHighest) {
     return Error{
         ErrorCode::invalid_argument,
@@ -120,16 +147,17 @@ Result<Canvas> draw_partition(const Cloud& grid, const std::vector<PartitionBloc
                     s.rows, s.columns, width, height)};
   }
   Canvas canvas(width, height);
-  draw_cells(canvas, s, grid, layer, scale, layers);
+  const bool degrees = settings.view == View::degrees;
+  draw_cells(canvas, s, grid, degrees ? degree_numbers(grid, blocks) : layer, scale, !ranges);
   for (const PartitionBlock& block : blocks) {
     if (block.row < grid.height && block.column < grid.width && block.rows > 0 &&
         block.columns > 0) {
-      outline(canvas, s, block);
+      outline(canvas, s, block, settings.view);
     }
   }
   draw_title(canvas, settings.title);
-  draw_legend(canvas, legend_y, pixel, layers);
-  if (!layers) draw_scale(canvas, scale);
+  draw_legend(canvas, legend_y, pixel, settings.view);
+  if (ranges) draw_scale(canvas, scale);
   return canvas;
 }
 

@@ -48,6 +48,10 @@ Result<Value> by_name(std::string_view name, const char* what,
                fmt::format("no {} named '{}'; there are {}", what, name, names)};
 }
 
+bool shows_blocks(View view) {
+  return view == View::partition || view == View::layers || view == View::degrees;
+}
+
 /// The same picture of the cloud with its high returns turned into empty slots.
 Result<Image> render_below(Cloud cloud, RenderSettings settings,
                            const std::vector<double>& values) {
@@ -62,12 +66,13 @@ Result<Image> render_below(Cloud cloud, RenderSettings settings,
 }  // namespace
 
 Result<View> view_by_name(std::string_view name) {
-  return by_name<View, 5>(name, "view",
+  return by_name<View, 6>(name, "view",
                           {{{"range-image", View::range_image},
                             {"birds-eye", View::birds_eye},
                             {"perspective", View::perspective},
                             {"partition", View::partition},
-                            {"layers", View::layers}}});
+                            {"layers", View::layers},
+                            {"degrees", View::degrees}}});
 }
 
 Result<ColourBy> colour_by_name(std::string_view name) {
@@ -81,9 +86,9 @@ Result<ColourBy> colour_by_name(std::string_view name) {
 Result<Image> render(const Cloud& cloud, const RenderSettings& settings,
                      const std::vector<double>& values) {
   CURLIDAR_TRY(check(settings));
-  if (settings.view == View::partition || settings.view == View::layers) {
+  if (shows_blocks(settings.view)) {
     return Error{ErrorCode::invalid_argument,
-                 "render: partition and layers are views of compact .curl files, not of clouds"};
+                 "render: partition, layers and degrees are views of .curl files, not of clouds"};
   }
   if (settings.clip_above_m) return render_below(cloud, settings, values);
   CURLIDAR_TRY_ASSIGN(scale, drawing::make_scale(cloud, settings, values));
@@ -104,11 +109,13 @@ Result<Image> render_partition(const Cloud& grid, const std::vector<PartitionBlo
                                const std::vector<std::uint8_t>& layer,
                                const RenderSettings& settings) {
   CURLIDAR_TRY(check(settings));
-  if (settings.view != View::partition && settings.view != View::layers) {
+  if (!shows_blocks(settings.view)) {
     return Error{ErrorCode::invalid_argument, "render: this view does not show a partition"};
   }
   const std::uint64_t cells = std::uint64_t{grid.width} * grid.height;
-  if (grid.width < 4 || grid.height == 0 || grid.size() != cells || layer.size() != cells) {
+  const bool layer_fits =
+      layer.size() == cells || (settings.view == View::degrees && layer.empty());
+  if (grid.width < 4 || grid.height == 0 || grid.size() != cells || !layer_fits) {
     return Error{ErrorCode::invalid_argument,
                  "render: a partition needs an organised cloud and a layer for each of its slots"};
   }

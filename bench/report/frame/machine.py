@@ -38,7 +38,7 @@ def header(context, command_line):
     scans = ", ".join(scan.name for scan in context.scans) or "none"
     return [
         ("made", f"{now:%Y-%m-%d %H:%M} UTC, {'quick' if context.quick else 'full'} mode"),
-        ("command", f"`{command_line}`"),
+        ("made with", f"`{command_line}`"),
         ("version", f"{said_by(context.curlidar, '--version')}, commit {commit()}"),
         ("machine", f"{cpu()}, {len(os.sched_getaffinity(0))} cores, "
                     f"{platform.system()} {platform.machine()}"),

@@ -54,6 +54,16 @@ TEST(RenderPartition, LeftOfThePictureIsTheLargestAzimuth) {
   EXPECT_NE(pixel(*image, 0, 5), pixel(*image, 80, 5));     // of two layers and of one
 }
 
+TEST(RenderPartition, DegreesColourWholeBlocks) {
+  const std::vector<PartitionBlock> blocks{{0, 0, 4, 8, 1}, {0, 8, 4, 4, 3}, {0, 12, 4, 4, 9}};
+  const auto image = render_partition(grid(), blocks, {}, settings(View::degrees));
+  ASSERT_TRUE(image) << image.error().message;
+  EXPECT_EQ(pixel(*image, 85, 5), pixel(*image, 155, 35));  // degree 1
+  EXPECT_EQ(pixel(*image, 5, 5), pixel(*image, 35, 35));    // 9 is drawn as 4 or more
+  EXPECT_NE(pixel(*image, 5, 5), pixel(*image, 45, 5));
+  EXPECT_NE(pixel(*image, 45, 5), pixel(*image, 85, 5));
+}
+
 TEST(RenderPartition, LayersHaveTheirColours) {
   std::vector<std::uint8_t> layer(64, 0);
   layer[8] = 1;
