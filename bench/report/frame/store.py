@@ -51,8 +51,8 @@ class Store:
         return record and record["lines"]
 
     def rows(self, name):
-        """The lines measured or found again in this run, each with its key."""
-        return [{**record["key"], **line}
+        """The lines measured or found again in this run, each with its key (which wins)."""
+        return [{**line, **record["key"]}
                 for record in self.used.get(name, {}).values() for line in record["lines"]]
 
     def failures(self):
