@@ -16,7 +16,7 @@ namespace {
 // Sweeps that span mean errors of 1 mm to 5 cm on raw scans, which reach farther than the grids.
 const std::map<std::string, std::vector<double>> kSweeps = {
     {"pcl-octree", {.002, .004, .008, .016, .028, .056, .112, .16}},
-    {"draco-kd-tree", {9, 10, 11, 12, 13, 14, 15, 16, 17, 18}},
+    {"draco-kd-tree", {6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18}},
     {"xyz-zstd19", {.002, .004, .008, .016, .028, .056, .112, .16}}};
 // Points that share a cell are lost: finer steps than these do not make the error less.
 const std::vector<double> kRangeSteps_m = {.004, .01, .02, .04, .08, .16, .28, .4};

@@ -15,7 +15,7 @@ BENCH = Path(__file__).resolve().parents[2]
 SECTION = "rate_distortion"
 ERRORS_M = (.001, .005, .01, .02, .05)
 QUICK_ERRORS_M = (.005, .02, .05)
-QUICK_SETTINGS = 4  # of each peer
+QUICK_SETTINGS = 6  # of each peer
 QUICK_CODECS = ("pcl-octree", "draco-kd-tree", "xyz-zstd19", "jpeg-xl-e9-2048",
                 "range-zstd19-2048")
 TIMES_AT_M, BACK_AT_M = .01, (.005, .05)
@@ -248,7 +248,7 @@ def table_id(part, item, number=0):
 
 def raw_table(context, item):
     found = raw_curves(context, item)
-    rows = [row_of(context, found, codec) for codec in found.points if codec != "peers"]
+    rows = [row_of(context, found, codec) for codec in found.points]
     return Table(table_id("raw", item), f"Bits at matched error, raw scan: {item.name}",
                  f"all {found.total:,} returns of the scan as its file is ({item.sensor}).",
                  columns_of(context, "bit/return", False), rows + stored_rows(context, item),
@@ -307,6 +307,10 @@ def tables(context):
     summary = Table("rate-distortion", "Raw scans, every return: ours and the best peer",
                     "all returns of each scan as its file is.", columns,
                     list(summary_rows(context)), RAW_NOTES[:2])
+    if context.quick:
+        summary.notes.append(
+            f"quick: at most {QUICK_SETTINGS} settings of each peer; the fewer they are, the more "
+            "bits the line between two of them shows")
     return [summary, *(raw_table(context, item) for item in inputs_of(context, "raw")),
             *(table for item in inputs_of(context, "grid") for table in grid_tables(context, item))]
 
@@ -341,9 +345,16 @@ def style_of(codec):
     return codec, "--" if codec.endswith("effort 9") else "-"
 
 
+def rank(codec):
+    """Its place in legends: ours first, the variants of a codec side by side."""
+    names = list(TITLES)
+    base = style_of(codec)[0]
+    return names.index(base) if base in names else len(names), codec
+
+
 def draw_panel(axes, title, rows):
     from frame import plots
-    for codec in dict.fromkeys(row["codec"] for row in rows):
+    for codec in sorted({row["codec"] for row in rows}, key=rank):
         name, line = style_of(codec)
         points = curves.frontier([row for row in rows if row["codec"] == codec], "bits")
         ours = codec.startswith(OURS)
@@ -362,13 +373,14 @@ def draw(context, part, unit):
     name = f"rate-distortion-{part}"
     rows = context.read_data(name)
     inputs = list(dict.fromkeys(row["input"] for row in rows))
-    figure, panels = plots.panels(len(inputs))
+    figure, panels = plots.panels(len(inputs) + 1)  # the last one is the legend's
     for axes, each in zip(panels, inputs):
         draw_panel(axes, each, [row for row in rows if row["input"] == each])
         axes.set_ylabel(unit)
     handles = {label: handle for axes in panels
                for handle, label in zip(*axes.get_legend_handles_labels())}
-    figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=3)
+    panels[-1].set_axis_off()
+    panels[-1].legend(handles.values(), handles.keys(), loc="center left")
     plots.save(figure, context.figure_path(name, "svg"))
     return name
 
