@@ -14,6 +14,7 @@ from common import curves  # noqa: E402
 from frame.cells import Missing, Published  # noqa: E402
 from frame.scans import Scan, Scene  # noqa: E402
 from sections import rate_distortion as section  # noqa: E402
+from sections import rate_distortion_curves  # noqa: E402
 
 REFERENCE = Scan("kitti_raw/curl_example/0.pcd", Path("0.pcd"), "HDL-64E")
 OTHER = Scan("kitti_raw/other.pcd", Path("other.pcd"), "HDL-64E")
@@ -130,7 +131,7 @@ class SectionTest(unittest.TestCase):
             rows = section.raw_table(context, REFERENCE).rows
         asked = [key["codec"] for key, _ in context.asked]
         self.assertEqual([codec for codec in asked if codec.startswith("gpcc")],
-                         list(section.EXTERNAL["tmc3"]))
+                         list(rate_distortion_curves.EXTERNAL["tmc3"]))
         stored = [row["codec"] for row in rows if "stored" in row["codec"]]
         self.assertIn("Cloudini zstd (stored)", stored)
         self.assertFalse([codec for codec in stored if "G-PCC" in codec], stored)
