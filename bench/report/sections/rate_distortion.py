@@ -172,8 +172,8 @@ def write_curves(context):
 def style_of(codec):
     """(name that colours it, line style): codecs look the same in all plots."""
     base, _, columns = codec.rpartition("-")
-    if columns in ("2048", "4096") and base in IMAGES:
-        return base, "--" if columns == "4096" else "-"
+    if columns.isdigit() and base in IMAGES:
+        return base, {"1024": ":", "4096": "--"}.get(columns, "-")
     return codec, "--" if codec.endswith("effort 9") else "-"
 
 

@@ -13,7 +13,7 @@ SECTION = "rate_distortion"
 ERRORS_M = (.001, .005, .01, .02, .05)
 QUICK_ERRORS_M = (.005, .02, .05)
 QUICK_SETTINGS = 6  # of each peer
-QUICK_CODECS = ("pcl-octree", "draco-kd-tree", "xyz-zstd19", "jpeg-xl-e9-2048",
+QUICK_CODECS = ("pcl-octree", "draco-kd-tree", "xyz-zstd19", "jpeg-xl-e9-1024", "jpeg-xl-e9-2048",
                 "range-zstd19-2048")
 OURS = "curlidar"
 TITLES = {
@@ -54,7 +54,7 @@ def name_of(line):
 
 def title_of(codec):
     base, _, columns = codec.rpartition("-")
-    if columns in ("2048", "4096") and base in IMAGES:
+    if columns.isdigit() and base in IMAGES:
         return TITLES[base].replace("range image", f"range image rings x {columns}")
     return TITLES.get(codec, codec)
 
