@@ -30,6 +30,19 @@ std::string why_not(const Detection& detection, std::uint32_t every) {
   return {};
 }
 
+/// The paper's settings for fewer rows. Rows spread evenly over the field of view are not where the
+/// rings of every sensor are, and fewer of them miss by more: rows are the rings. What is farther
+/// from the next row than a cliff allows must be allowed to be so by as much more.
+EncodeSettings for_every_nth(EncodeSettings settings, const SensorProfile& sensor,
+                             std::uint32_t every) {
+  settings.sensor = sensor;
+  settings.paper.row_rule = RowRule::rings;
+  CliffThresholds& cliffs = settings.paper.cliffs;
+  cliffs.row_m *= every;
+  cliffs.diagonal_m = std::hypot(cliffs.row_m, cliffs.column_m);
+  return settings;
+}
+
 /// Ranges that a method tells in the directions of the points; nothing without a sampler.
 std::vector<double> predict(const Method& method, const std::vector<Vec3>& points) {
   std::vector<double> ranges;
@@ -105,11 +118,7 @@ Status held_out(const Arguments& arguments) {
     return {};
   }
   const RingSplit split = split_rings(scan.cloud, detection, every);
-  EncodeSettings paper = scan.settings;
-  paper.sensor = split.sensor;
-  // Rows spread evenly over the field of view are not where the rings of every sensor are, and
-  // fewer of them miss by more.
-  paper.paper.row_rule = RowRule::rings;
+  const EncodeSettings paper = for_every_nth(scan.settings, split.sensor, every);
   CURLIDAR_TRY_ASSIGN(limits, limits_of(split.coded, paper));
   print_line({{"preset", scan.preset},
               {"sensor", detection.sensor.name},
