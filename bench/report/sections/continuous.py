@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Between the samples: simulated scans against exact truth, real ones against rings held out."""
+from frame import plots
+from frame.cells import Missing
+from frame.tables import Column, Figure, Table
+from sections.one_to_one import table_id, taken_as
+
+TITLE = "Continuous reconstruction"
+TABLES = ("continuous-published",)
+FACTORS = (2, 4, 8)
+FEWEST_COMMON = 100  # returns in common; means over fewer say nothing
+NO_FILE = Missing("raw samples, no file")
+METHODS = {"paper": "paper", "compact": "curlidar", "linear": "linear in 1/r",
+           "edge-aware": "edge-aware in 1/r"}
+FIGURES = [
+    Column("points", "points"), Column("mean", "mean", "m", 4), Column("p50", "median", "m", 4),
+    Column("p95", "p95", "m", 4), Column("rms", "rms", "m", 4),
+    Column("within_5cm", "within 5 cm", "share", check="share"),
+    Column("completeness", "completeness", "share", check="share")]
+IDENTITY = [Column("method", "method"), Column("setting", "setting"),
+            Column("bits_per_point", "bits a return", digits=2)]
+NO_SURFACE = Column("no_surface", "points where there is no surface")
+COMMON = [Column("common_mean", "mean, where all methods tell", "m", 4),
+          Column("common_p95", "p95, where all tell", "m", 4)]
+
+
+def measure(context):
+    for scene in context.scenes:
+        truth_of(context, scene)
+    for scan in context.scans:
+        for every in FACTORS:
+            held_out_of(context, scan, every)
+
+
+def truth_of(context, scene):
+    return context.measure("continuous", {"input": scene.name, "part": "truth"}, truth_command(
+        context.bin / "report_measure", scene))
+
+
+def truth_command(program, scene):
+    return [program, "truth", scene.name, scene.sensor, scene.preset, "--factors",
+            ",".join(map(str, FACTORS)), "--seed", str(scene.seed)]
+
+
+def held_out_of(context, scan, every):
+    return context.measure("continuous", {"input": scan.name, "part": "held out", "every": every},
+                           held_out_command(context.bin / "report_measure", scan, scan.path, every))
+
+
+def held_out_command(program, scan, path, every):
+    return [program, "held-out", path, "--every", str(every), *taken_as(scan)]
+
+
+def cells_of(line, columns):
+    """A method's cells; all the same where it could not be measured."""
+    who = {"method": METHODS[line["method"]], "setting": line["setting"]}
+    if "skipped" in line:
+        return {**dict.fromkeys((column.key for column in columns), Missing(line["skipped"])), **who}
+    row = {**line, **who, "bits_per_point": line.get("bits_per_point", NO_FILE)}
+    if "common" in line:
+        enough = line["common"]["count"] >= FEWEST_COMMON
+        few = Missing(f"all methods tell a range of {line['common']['count']} returns only")
+        row.update({f"common_{kind}": line["common"][kind] if enough else few
+                    for kind in ("mean", "p95")})
+    return row
+
+
+def truth_table(context, scene):
+    columns = [*IDENTITY, Column("factor", "R"), *FIGURES, NO_SURFACE]
+    lines = truth_of(context, scene)
+    notes = ["Methods reconstruct on their own grids: the paper's of 1024 columns, the rings and the "
+             "columns of the sensor for the others. linear, edge-aware: interpolation of the raw "
+             "samples themselves; edge-aware takes the nearer sample alone where two ranges "
+             "differ by more than 20 %.",
+             "curlidar: every return, mean error 5 cm or 1 bit a return. Errors along the ray. "
+             "Completeness: share of the rays which meet a surface within the limits that get a "
+             "point."]
+    if "failure" in lines[0]:
+        rows = [failed(lines[0], columns)]
+    else:
+        rows = [cells_of(line, columns) for line in lines if "method" in line]
+        notes.insert(0, said_of(lines[0]))
+    return Table(table_id("continuous-truth", scene),
+                 f"Between the rows of the simulated scan {scene.name} ({scene.sensor}), against the "
+                 "exact scene",
+                 "reconstructed points at R times the rows that lie on no coded row and within the "
+                 "paper's range limits, each against the surface that its own ray meets.",
+                 columns, rows, notes, shown(truth_command("report_measure", scene)))
+
+
+def held_out_table(context, scan, found):
+    columns = [Column("every", "K"), *IDENTITY, *FIGURES, *COMMON]
+    rows, notes = [], []
+    for every, lines in found.items():
+        if "failure" in lines[0]:
+            rows.append({**failed(lines[0], columns), "every": every})
+            continue
+        rows += [{**cells_of(line, columns), "every": every} for line in lines if "method" in line]
+        first = lines[0]
+        if "method" not in first and "skipped" not in first:
+            notes.append(f"K = {every}: {first['returns_coded']:,} returns of {first['rings_coded']} "
+                         f"of {first['rings']} rings coded, {first['returns_held_out']:,} held out; "
+                         f"{said_of(first)}")
+    notes += ["The paper's rows are these rings and its cliffs between rows K times as high, since "
+              "its even rows would miss the rings. Bits are of each coded return; what there is no "
+              "return of is not known, hence no count of points without a surface.",
+              "Where all methods tell: over the held-out returns of which every method predicts a "
+              "range, so that no one gains by leaving out the hard ones."]
+    return Table(table_id("continuous-held-out", scan), f"Rings held out of {scan.name}",
+                 "returns of the rings between every K-th, in their exact directions, where a "
+                 "method predicts a range within the paper's limits.",
+                 columns, rows, notes,
+                 shown(held_out_command("report_measure", scan, scan.name, "K")))
+
+
+def failed(line, columns):
+    return {**dict.fromkeys((column.key for column in columns), Missing(line["failure"])),
+            "method": "all", "setting": "all"}
+
+
+def said_of(line):
+    preset = f"preset {line['preset']}, " if "preset" in line else ""
+    return f"{preset}limits {line['min_range_m']:.1f} .. {line['max_range_m']:.1f} m."
+
+
+def shown(command):
+    return " ".join(map(str, command))
+
+
+def left_out(lines):
+    """Why no ring of a scan can be held out; empty if one can."""
+    return lines[0].get("skipped", "") if "method" not in lines[0] else ""
+
+
+def published(context):
+    """The paper's table beside what its method reaches here, at R = 2, 4, 8."""
+    likes = {"Newer College": "newer-college", "INDOOR": "room"}
+    rows = []
+    for row in context.published_rows("continuous"):
+        scene = next((each for each in context.scenes if each.name == likes[row["dataset"]]), None)
+        ours = truth_means(context, scene, row["method"]) if scene else {}
+        why = Missing("not measured by this version" if row["method"] == "baseline"
+                      else f"the scene {likes[row['dataset']]} is not in this run" if not scene
+                      else "see the table of the scene")
+        rows.append({**row, **{f"ours_{factor}": ours.get(factor, why) for factor in FACTORS}})
+    columns = [Column("dataset", "dataset"), Column("method", "method"),
+               Column("cp_percent", "CP, published", "%")]
+    for factor in FACTORS:
+        columns += [Column(f"mean_{factor}_m", f"R = {factor}: mean, published", "m"),
+                    Column(f"std_{factor}_m", "std, published", "m"),
+                    Column(f"ours_{factor}", "mean here", "m", 4)]
+    return Table(
+        "continuous-published", "The paper's continuous reconstruction, published and here",
+        "published: all points of each sequence against its survey map; here: the points between the "
+        "rows of one simulated scan like it (newer-college, room), along their rays.",
+        columns, rows,
+        ["Other data and another measure: only the order of the methods compares."])
+
+
+def truth_means(context, scene, method):
+    """{R: mean} of the paper's method 'paper S=2x1'."""
+    return {line["factor"]: line["mean"] for line in truth_of(context, scene)
+            if line.get("method") == "paper" and "mean" in line
+            and f"paper {line['setting'].replace(' ', '=')}" == method}
+
+
+def tables(context):
+    found = [truth_table(context, scene) for scene in context.scenes]
+    reasons = []
+    for scan in context.scans:
+        lines = {every: held_out_of(context, scan, every) for every in FACTORS}
+        usable = {every: each for every, each in lines.items() if not left_out(each)}
+        reasons += [{"input": scan.name, "every": every, "why": left_out(each)}
+                    for every, each in lines.items() if left_out(each)]
+        if usable:
+            found.append(held_out_table(context, scan, usable))
+    if reasons:
+        found.append(Table(
+            "continuous-left-out", "Scans whose rings were not held out", "no points.",
+            [Column("input", "scan"), Column("every", "K"), Column("why", "why not")], reasons))
+    return [*found, published(context)]
+
+
+def drawn(line):
+    return f"{METHODS[line['method']]}, {line['setting']}" if line["method"] in (
+        "paper", "compact") else METHODS[line["method"]]
+
+
+NAMES = ("curlidar, 1 bit a point", "curlidar, 5 cm", "paper, S 1x1", "paper, S 2x1", "paper, S 2x2",
+         "linear in 1/r", "edge-aware in 1/r")
+
+
+def figures(context):
+    truth = [(scene.name, line["factor"], drawn(line), line["mean"], line["p50"], line["p95"],
+              line["completeness"])
+             for scene in context.scenes for line in truth_of(context, scene) if "mean" in line]
+    held = [(scan.name, every, drawn(line), line["mean"], line["p50"], line["p95"],
+             line["completeness"])
+            for scan in context.scans for every in FACTORS
+            for line in held_out_of(context, scan, every) if "mean" in line]
+    found = []
+    for name, rows, axis, title, caption in (
+            ("continuous-truth", truth, "R, times the rows", "Error between the rows",
+             "Mean error of the points between the rows of simulated scans, against exact truth."),
+            ("continuous-held-out", held, "K, every K-th ring coded", "Error at rings held out",
+             "Mean error of the ranges predicted in the directions of returns that were held out.")):
+        if rows:
+            context.write_data(name, ["input", "factor", "method", "mean", "p50", "p95",
+                                      "completeness"], rows)
+            draw(context, name, axis)
+            found.append(Figure(name, title, caption + " One panel a scan; above the error, below the "
+                                "share of the directions that got a point.", "svg",
+                                f"data/{name}.csv"))
+    return found
+
+
+def draw(context, name, label):
+    rows = context.read_data(name)
+    inputs = list(dict.fromkeys(row["input"] for row in rows))
+    per_row = min(3, len(inputs))
+    figure, axes = plots.panels(2 * per_row * -(-len(inputs) // per_row), columns=per_row,
+                                height=2.2)
+    for i, each in enumerate(inputs):
+        above = 2 * per_row * (i // per_row) + i % per_row
+        for key, axis in (("mean", axes[above]), ("completeness", axes[above + per_row])):
+            for method in NAMES:
+                line = sorted((row["factor"], row[key]) for row in rows
+                              if row["input"] == each and row["method"] == method)
+                if line:
+                    axis.plot(*zip(*line), marker=plots.MARKERS[NAMES.index(method)], label=method,
+                              color=plots.colour_of(method, NAMES),
+                              linestyle="--" if method == "curlidar, 5 cm" else "-")
+            axis.set(xscale="log", xlabel=label)
+            axis.set_xticks(FACTORS, [str(factor) for factor in FACTORS])
+            axis.minorticks_off()
+        axes[above].set(title=each, yscale="log", ylabel="mean error (m)")
+        axes[above + per_row].set(ylim=(0, 1.03), ylabel="completeness")
+    for i in range(len(inputs), per_row * -(-len(inputs) // per_row)):
+        above = 2 * per_row * (i // per_row) + i % per_row
+        axes[above].set_axis_off()
+        axes[above + per_row].set_axis_off()
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    plots.save(figure, context.figure_path(name, "svg"))
+
+
+def check(_context, found):
+    """A median is no more than the p95, and every table has every method."""
+    for table in found:
+        if not table.id.startswith(("continuous-truth", "continuous-held-out")):
+            continue
+        methods = {row["method"] for row in table.rows}
+        if not methods >= set(METHODS.values()):
+            yield f"table {table.id}: only {', '.join(sorted(methods))}"
+        for row in table.rows:
+            if not isinstance(row["p95"], Missing) and row["p50"] > row["p95"]:
+                yield f"table {table.id}: a median above its p95"
