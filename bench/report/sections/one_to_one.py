@@ -2,7 +2,6 @@
 """The paper's first comparison: one gridded cloud by every codec, errors in both directions."""
 import re
 
-from frame import plots
 from frame.cells import Missing
 from frame.scans import Scene
 from frame.tables import Column, Figure, Table
@@ -28,7 +27,7 @@ METHODS = {
 DRAWN = ("baseline, degree 64", "PCL low online", "PCL mid offline", "paper, default",
          "paper, tuned for 1:1", "curlidar, 5 mm", "curlidar, 2 cm", "curlidar, 5 cm")
 DIRECTIONS = ("to_grid", "from_grid", "to_raw", "from_raw")
-NO_CP = Missing("defined for CURL's coefficients and for PCL")
+NO_CP = Missing("not defined for it")
 COUNTS = ("the paper's gridded cloud (as many rows as rings, 1024 columns, its outlier filter and its "
           "range limits), which every codec is given; raw: the raw returns within these limits.")
 # Measured inputs that the means over each dataset of the paper are of.
@@ -42,6 +41,20 @@ GROUPS = {
 def taken_as(item):
     """Options that say how to take an input: a simulated one is known, a real one is looked at."""
     return ["--sensor", item.sensor, "--preset", item.preset] if isinstance(item, Scene) else []
+
+
+def file_of(item):
+    """Its cloud in a command that a person types."""
+    return f"{item.name}.pcd" if isinstance(item, Scene) else item.name
+
+
+def again(item, measurement):
+    """What a person types to measure it again."""
+    command = " ".join(["report_measure", measurement, *taken_as(item)])
+    if not isinstance(item, Scene):
+        return command
+    return (f"curlidar simulate --scene {item.name} --sensor {item.sensor} --seed {item.seed} "
+            f"-o {file_of(item)} && {command}")
 
 
 def measure(context):
@@ -102,7 +115,7 @@ def table_of(context, item):
                  "(float32).")
     return Table(table_id("one-to-one", item), f"1:1 reconstruction of {item.name}", COUNTS,
                  [Column("method", "codec"), *FIGURES], rows, notes,
-                 f"report_measure one-to-one {' '.join([item.name, *taken_as(item)])}")
+                 again(item, f"one-to-one {file_of(item)}"))
 
 
 def table_id(prefix, item):
@@ -212,9 +225,10 @@ def figures(context):
 
 
 def draw_errors(context, direction, name):
+    from frame import plots
     rows = [row for row in context.read_data("one-to-one-errors") if row["direction"] == direction]
     inputs = list(dict.fromkeys(row["input"] for row in rows))
-    figure, axes = plots.panels(len(inputs), sharex=True, sharey=True)
+    figure, axes = plots.panels(len(inputs) + 1)  # the last one is the legend's
     for axis, each in zip(axes, inputs):
         for method in DRAWN:
             curve = [(row["error_m"], row["percent"]) for row in rows
@@ -224,13 +238,15 @@ def draw_errors(context, direction, name):
                           linestyle=style(method))
         axis.set(title=each, xscale="log", xlim=(5e-4, 1), ylim=(0, 100),
                  xlabel="error (m)", ylabel="points (%)")
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+        plain_numbers(axis.xaxis, (1,))
+    explain(axes[-1], axes[0])
     plots.save(figure, context.figure_path(name, "svg"))
 
 
 def draw_sizes(context):
+    from frame import plots
     rows = context.read_data("one-to-one-sizes")
-    figure, axes = plots.panels(2)
+    figure, axes = plots.panels(3)
     for axis, of in zip(axes, ("CP of the paper", "float32 xyz")):
         for method in DRAWN:
             values = sorted(row["percent"] for row in rows
@@ -240,11 +256,27 @@ def draw_sizes(context):
                 axis.step([values[0], *values], shares, where="post", color=colour(method),
                           label=method, linestyle=style(method))
         axis.set(title=of, xscale="log", ylim=(0, 102), xlabel="size (%)", ylabel="scans (%)")
-    figure.legend(*axes[1].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+        plain_numbers(axis.xaxis)
+    explain(axes[-1], axes[1])
     plots.save(figure, context.figure_path("one-to-one-sizes", "svg"))
 
 
+def explain(axis, drawn):
+    """A panel that holds the legend of another one."""
+    axis.set_axis_off()
+    axis.legend(*drawn.get_legend_handles_labels(), loc="center left")
+
+
+def plain_numbers(axis, steps=(1, 2, 5)):
+    """Ticks of a logarithmic axis as 0.02, not as powers."""
+    from matplotlib import ticker
+    axis.set_major_locator(ticker.LogLocator(subs=steps))
+    axis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+    axis.set_minor_formatter(ticker.NullFormatter())
+
+
 def colour(method):
+    from frame import plots
     return plots.colour_of(method, DRAWN)
 
 
