@@ -108,8 +108,12 @@ Status print_pcl(const Originals& originals) {
 Status one_to_one(const Arguments& arguments) {
   CURLIDAR_TRY_ASSIGN(scan, read_scan(arguments));
   Originals originals;
-  CURLIDAR_TRY_ASSIGN(grid, gridded(scan.cloud, scan.settings));
-  originals.grid = std::move(grid);
+  Result<Cloud> grid = gridded(scan.cloud, scan.settings);
+  if (!grid) {
+    print_line({{"skipped", grid.error().message}});
+    return {};
+  }
+  originals.grid = std::move(*grid);
   originals.points = count_returns(originals.grid);
   const PaperSettings limits = range_limits(scan.settings.paper, originals.grid);
   originals.raw = in_range(scan.cloud, limits);

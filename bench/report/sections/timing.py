@@ -82,8 +82,7 @@ def codec_table(context, item, lines):
          "filter and the projection are left out of 'after gridding'. curlidar searches the step "
          "that reaches its error: several trial encodings.",
          f"PCL: its low online profile, in the same run. A copy: memcpy of the gridded cloud as "
-         f"float32, {1e3 * copy_ms:.1f} us.",
-         "Published: on an i7-10875H with 8 cores, KITTI sequence 0."],
+         f"float32, {1e3 * copy_ms:.1f} us."],
         shown(item, lines))
 
 
@@ -115,8 +114,7 @@ def stage_table(context, item, lines):
         COUNTS.format(runs=lines[0]["runs"], points=lines[0]["grid_points"]),
         columns, [stage_row(context, lines, line) for line in stages],
         ["Upsampling: mesh and rays; extraction: both passes of the fit; decoding: reading the file's "
-         "bytes. The outlier filter and the projection are not counted, as in the paper's table.",
-         "Published: on an i7-10875H with 8 cores, KITTI sequence 0."],
+         "bytes. The outlier filter and the projection are not counted, as in the paper's table."],
         shown(item, lines))
 
 
