@@ -153,6 +153,17 @@ CURVE_COLUMNS = ("input", "codec", "setting", "error_m", "bits", "p95_m", "back"
                  "decode_ms")
 
 
+def stored_points(context, item):
+    """The points of stored curves, of the scan they were measured on."""
+    for row in stored_rows(context, item):
+        for error_m in errors_of(context):
+            cell = row[key_of(error_m)]
+            if "curve" in row and isinstance(cell, Published):
+                yield {**dict.fromkeys(CURVE_COLUMNS, ""), "input": item.name,
+                       "codec": row["curve"], "setting": "stored", "error_m": error_m,
+                       "bits": float(cell.value)}
+
+
 def write_curves(context):
     """data/rate-distortion-raw.csv and -grid.csv."""
     for part in ("raw", "grid"):
@@ -166,6 +177,7 @@ def write_curves(context):
                     key: value for key, value in p.items()
                     if key in CURVE_COLUMNS and value is not None}}
                     for codec, points in each.points.items() for p in points]
+            rows += stored_points(context, item) if part == "raw" else []
         context.write_data(f"rate-distortion-{part}", CURVE_COLUMNS, rows)
 
 
@@ -191,8 +203,10 @@ def draw_panel(axes, title, rows):
         points = curves.frontier([row for row in rows if row["codec"] == codec], "bits")
         ours = codec.startswith(OURS)
         axes.plot([1e3 * p["error_m"] for p in points], [p["bits"] for p in points], line,
+                  alpha=.6 if points[0]["setting"] == "stored" else 1,
                   color=plots.colour_of(name, list(TITLES)), marker="o", markersize=3,
-                  linewidth=2.2 if ours else 1.2, zorder=3 if ours else 2, label=title_of(codec))
+                  linewidth=2.2 if ours else 1.2, zorder=3 if ours else 2,
+                  label=title_of(codec) + (" †" if points[0]["setting"] == "stored" else ""))
     axes.set(title=title, xscale="log", yscale="log", xlim=(.8, 125))
     axes.set_xticks([1, 2, 5, 10, 20, 50, 100], ["1 mm", "2", "5", "1 cm", "2", "5", "10 cm"])
     axes.set_xticks([], minor=True)
@@ -223,7 +237,8 @@ def figures(context):
     write_curves(context)
     return [Figure(draw(context, "raw", "bits a return"), "Raw scans, every return",
                    "Mean nearest-neighbour error (the larger direction) across, bits a return "
-                   "upwards; points that another setting beats are left out", "svg",
+                   "upwards; points that another setting beats are left out; †: stored, not "
+                   "measured by this run", "svg",
                    "data/rate-distortion-raw.csv"),
             Figure(draw(context, "grid", "bits a cell"), "The gridded cloud",
                    "Mean error across, bits an occupied cell upwards", "svg",
