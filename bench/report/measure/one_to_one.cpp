@@ -92,7 +92,7 @@ Outcome pcl_outcome(const Cloud& grid, std::size_t points, std::size_t profile) 
 }
 #endif
 
-Status print_pcl(const Originals& originals) {
+Status print_pcl([[maybe_unused]] const Originals& originals) {
   for (std::size_t profile = 0; profile < kPclProfiles.size(); ++profile) {
 #ifdef CURLIDAR_BENCH_HAS_PCL
     CURLIDAR_TRY(print_outcome(pcl_outcome(originals.grid, originals.points, profile), originals));

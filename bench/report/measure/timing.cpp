@@ -70,7 +70,7 @@ Status time_codec(const std::string& codec, const std::string& setting, const Cl
   return {};
 }
 
-void time_pcl(const Cloud& grid, std::uint32_t runs) {
+void time_pcl([[maybe_unused]] const Cloud& grid, [[maybe_unused]] std::uint32_t runs) {
   for (std::size_t profile = 0; profile < kPclProfiles.size(); ++profile) {
 #ifdef CURLIDAR_BENCH_HAS_PCL
     Laps laps;
@@ -88,9 +88,6 @@ void time_pcl(const Cloud& grid, std::uint32_t runs) {
                 {"skipped", kNoPcl}});
 #endif
   }
-#ifndef CURLIDAR_BENCH_HAS_PCL
-  static_cast<void>(grid), static_cast<void>(runs);
-#endif
 }
 
 /// The paper's default codec: upsampling (mesh and rays), extraction (the fit), reconstruction.
