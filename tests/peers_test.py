@@ -26,7 +26,8 @@ if options["mode"] == "0":
         assert len(options["lasersTheta"].split(",")) == int(options["numLasers"]) == 16, options
     open(options["compressedStreamPath"], "wb").write(zlib.compress(read("uncompressedDataPath")))
 else:
-    open(options["reconstructedDataPath"], "wb").write(zlib.decompress(read("compressedStreamPath")))
+    decoded = zlib.decompress(read("compressedStreamPath"))
+    open(options["reconstructedDataPath"], "wb").write(decoded)
 """
 CLOUDINI = """#!{python}
 import sys, zlib
@@ -91,7 +92,8 @@ class PeersTest(unittest.TestCase):
         self.assertGreater(line["points_back"], .9 * returns)
 
     def test_unknown_codecs_and_options_are_refused(self):
-        for options in (("--codecs", "zip"), ("--settings", "two"), ("--speed", "9"), ("--codecs",)):
+        for options in (("--codecs", "zip"), ("--settings", "two"), ("--speed", "9"),
+                        ("--codecs",)):
             run = subprocess.run([PROGRAM, "cloud", self.scan, *options], check=False,
                                  capture_output=True, text=True)
             self.assertEqual(run.returncode, 1, options)
@@ -109,7 +111,8 @@ class PeersTest(unittest.TestCase):
 
     def test_gpcc_is_driven_on_a_lattice_of_its_step(self):
         returns, _ = self.cloud("--codecs", "xyz-zstd19", "--settings", "1")
-        for codec, coarsest in (("gpcc-octree", .2), ("gpcc-predictive", .2), ("gpcc-angular", .001)):
+        for codec, coarsest in (("gpcc-octree", .2), ("gpcc-predictive", .2),
+                                ("gpcc-angular", .001)):
             fine, coarse = self.external(codec, TMC3)
             self.assertEqual({fine["points_back"], coarse["points_back"]}, {returns}, codec)
             self.assertGreater(fine["bytes"], 0)
