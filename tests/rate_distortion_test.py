@@ -1,14 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """What ./dev rate-distortion computes from measured points, and what it has stored."""
+import contextlib
+import io
+import json
 import math
 import sys
 import unittest
 import xml.etree.ElementTree
 from pathlib import Path
+from unittest import mock
 
 ROOM = Path(__file__).resolve().parents[1] / "bench/rate_distortion"
 sys.path.insert(0, str(ROOM))
+import lines  # noqa: E402
 import measure  # noqa: E402
 import plot  # noqa: E402
 import scans  # noqa: E402
@@ -58,6 +63,28 @@ class TableTest(unittest.TestCase):
         other = [point("a", .05, 3.32, scan="other")]
         goals = table.goals_at(other, .05, 3.32)
         self.assertTrue(all(map(math.isclose, goals, (1.24, 1.5))), goals)
+
+
+class LinesTest(unittest.TestCase):
+    def test_every_effort_is_measured_at_every_error_and_failures_are_told(self):
+        def ours_at(_grid, _size, _program, _curlidar, target_m, effort, _folder):
+            if target_m == .02 and effort == "9":
+                raise RuntimeError("no way")
+            return point(measure.OURS, target_m, 1., target_m=target_m, effort=effort), []
+        grid = scans.Grid(scans.Scan("a", Path("a"), "b"), Path("g"), "5", "p90", 7)
+        peer = {"codec": "zip", "skipped": "its library was not found when this was built"}
+        said = io.StringIO()
+        with mock.patch.object(measure, "ours_at", ours_at), \
+                mock.patch.object(scans, "grids_of", lambda *_: [grid]), \
+                mock.patch.object(measure, "output_of",
+                                  lambda *_: '{"cells": 7}\n' + json.dumps(peer)), \
+                contextlib.redirect_stdout(said):
+            lines.main("program", "curlidar", "a.pcd", ".05,.02", "default,9", "0")
+        size, skipped, *ours = map(json.loads, said.getvalue().splitlines())
+        self.assertEqual((size["cells"], size["max_range"], skipped), (7, "p90", peer))
+        self.assertEqual([(line["effort"], line["target_m"]) for line in ours],
+                         [("default", .05), ("default", .02), ("9", .05), ("9", .02)])
+        self.assertEqual(ours[-1]["skipped"], "no way")
 
 
 class StoredCurvesTest(unittest.TestCase):

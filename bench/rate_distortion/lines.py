@@ -43,8 +43,8 @@ def ours(grid, size, program, curlidar, targets_m, efforts, folder):
                        "skipped": str(error)}
 
 
-def main():
-    program, curlidar, scan, targets_m, efforts, settings = sys.argv[1:]
+def main(program, curlidar, scan, targets_m, efforts, settings):
+    targets_m, efforts = [float(target) for target in targets_m.split(",")], efforts.split(",")
     scan = scans.Scan(Path(scan).name, Path(scan), "not stated")
     with tempfile.TemporaryDirectory() as name:
         grids = scans.grids_of(scan, curlidar, Path(name))
@@ -53,8 +53,7 @@ def main():
         for grid in grids:
             size, lines = peers(grid, program, settings)
             print(json.dumps({**size, "min_range": grid.min_range, "max_range": grid.max_range}))
-            lines += ours(grid, size, program, curlidar, map(float, targets_m.split(",")),
-                          efforts.split(","), Path(name))
+            lines += ours(grid, size, program, curlidar, targets_m, efforts, Path(name))
             for line in lines:
                 print(json.dumps(line), flush=True)
 
@@ -63,6 +62,6 @@ if __name__ == "__main__":
     if len(sys.argv) != 7:
         sys.exit(__doc__)
     try:
-        main()
+        main(*sys.argv[1:])
     except RuntimeError as error:
         sys.exit(str(error))

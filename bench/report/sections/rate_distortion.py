@@ -21,6 +21,21 @@ def measure(context):
             lines_of(context, item, part)
 
 
+def style_of(codec):
+    """(name that colours it, line style): codecs look the same in all plots."""
+    base, _, columns = codec.rpartition("-")
+    if columns.isdigit() and base in IMAGES:
+        return base, {"1024": ":", "4096": "--"}.get(columns, "-")
+    return codec, "--" if codec.endswith("effort 9") else "-"
+
+
+def rank(codec):
+    """Its place in legends: ours first, the variants of a codec side by side."""
+    names = list(TITLES)
+    base = style_of(codec)[0]
+    return names.index(base) if base in names else len(names), codec
+
+
 # Tables -----------------------------------------------------------------------------------------
 
 def columns_of(context, unit, kind):
@@ -80,7 +95,7 @@ def table_id(part, item, number=0):
 
 def raw_table(context, item):
     found = raw_curves(context, item)
-    rows = [row_of(context, found, codec) for codec in found.points]
+    rows = [row_of(context, found, codec) for codec in sorted(found.points, key=rank)]
     return Table(table_id("raw", item), f"Bits at matched error, raw scan: {item.name}",
                  f"all {found.total:,} returns of the scan as its file is ({item.sensor}).",
                  columns_of(context, "bit/return", False), rows + stored_rows(context, item),
@@ -89,7 +104,7 @@ def raw_table(context, item):
 
 def grid_tables(context, item):
     for number, (heading, found) in enumerate(grid_curves(context, item)):
-        rows = [row_of(context, found, codec) for codec in found.points]
+        rows = [row_of(context, found, codec) for codec in sorted(found.points, key=rank)]
         yield Table(table_id("grid", item, number),
                     f"Bits at matched error, gridded: {item.name}",
                     f"the {found.total:,} occupied cells of the true rings x 1024 columns "
@@ -179,21 +194,6 @@ def write_curves(context):
                     for codec, points in each.points.items() for p in points]
             rows += stored_points(context, item) if part == "raw" else []
         context.write_data(f"rate-distortion-{part}", CURVE_COLUMNS, rows)
-
-
-def style_of(codec):
-    """(name that colours it, line style): codecs look the same in all plots."""
-    base, _, columns = codec.rpartition("-")
-    if columns.isdigit() and base in IMAGES:
-        return base, {"1024": ":", "4096": "--"}.get(columns, "-")
-    return codec, "--" if codec.endswith("effort 9") else "-"
-
-
-def rank(codec):
-    """Its place in legends: ours first, the variants of a codec side by side."""
-    names = list(TITLES)
-    base = style_of(codec)[0]
-    return names.index(base) if base in names else len(names), codec
 
 
 def draw_panel(axes, title, rows):
