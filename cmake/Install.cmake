@@ -33,6 +33,16 @@ if(CURLIDAR_BUILD_APP)
   endif()
 endif()
 
+# `curlidar report`: scripts and measuring programs, where the benchmarks are built.
+if(CURLIDAR_BUILD_APP AND CURLIDAR_BUILD_BENCH)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/bench/report ${PROJECT_SOURCE_DIR}/bench/common
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/curlidar COMPONENT report
+    FILES_MATCHING PATTERN "*.py" PATTERN "published.toml"
+    PATTERN "__pycache__" EXCLUDE PATTERN "measure" EXCLUDE)
+  install(TARGETS report_measure rate_distortion
+    RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/curlidar COMPONENT report)
+endif()
+
 if(NOT PROJECT_IS_TOP_LEVEL)
   return()
 endif()

@@ -20,5 +20,6 @@ Command add_render(CLI::App& root);
 Command add_sensors(CLI::App& root);
 Command add_calibrate(CLI::App& root);
 Command add_demo(CLI::App& root);
+Command add_report(CLI::App& root);
 
 }  // namespace curlidar::app

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The command line itself: help, versions, usage errors, exit codes."""
 
+import os
 import re
+import subprocess
 import unittest
 
-from support import FILE, INPUT, USAGE, CommandTest
+from support import CURLIDAR, FILE, INPUT, USAGE, CommandTest
 
 COMMANDS = ["encode", "decode", "mesh", "upsample", "convert", "info", "project", "compare",
             "verify", "simulate", "render", "sensors", "calibrate", "demo"]
@@ -17,7 +19,7 @@ class UsageTest(CommandTest):
 
     def test_help_lists_every_command_and_the_exit_codes(self):
         text = self.run_ok("--help").decode()
-        for command in COMMANDS:
+        for command in [*COMMANDS, "report"]:
             self.assertIn(f"\n  {command} ", text)
         self.assertIn("Exit codes:", text)
 
@@ -30,6 +32,14 @@ class UsageTest(CommandTest):
                 self.assertIn("--quiet", text)
                 if command != "demo":
                     self.assertIn("Examples:", text)
+
+    def test_report_says_where_its_programs_should_be(self):
+        self.assertIn("Examples:", self.run_ok("report", "--help").decode())
+        missing = {**os.environ, "CURLIDAR_REPORT_DIR": str(self.folder / "nothing")}
+        result = subprocess.run([CURLIDAR, "report"], env=missing, capture_output=True, check=False)
+        self.assertEqual(result.returncode, FILE)
+        self.assertIn(b"CURLIDAR_REPORT_DIR", result.stderr)
+        self.assertEqual(self.execute("report", "--no-such").returncode, USAGE)
 
     def test_encode_help_shows_the_parameter_table_with_defaults(self):
         text = self.run_ok("encode", "--help").decode()

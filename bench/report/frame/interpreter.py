@@ -9,18 +9,27 @@ SYSTEM_PYTHON = "/usr/bin/python3"
 NEEDED = ("numpy", "matplotlib")
 
 
+def found():
+    """The Python that has what is needed: this one, or the system's, whose packages come from the
+    distribution, where the first one on PATH is another. None if neither has."""
+    if all(importlib.util.find_spec(name) for name in NEEDED):
+        return sys.executable
+    code = f"import {', '.join(NEEDED)}"
+    other = os.path.realpath(sys.executable) != os.path.realpath(SYSTEM_PYTHON)
+    if other and os.path.exists(SYSTEM_PYTHON) and subprocess.run(
+            [SYSTEM_PYTHON, "-c", code], check=False, capture_output=True).returncode == 0:
+        return SYSTEM_PYTHON
+    return None
+
+
 def ensure_matplotlib():
-    """Goes on with the system's Python, whose packages come from the distribution, where the first
-    one on PATH is another and lacks them."""
-    missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
-    if not missing:
+    """Goes on with a Python that has them, or says what to install and ends the program."""
+    python = found()
+    if python == sys.executable:
         return
-    if os.path.realpath(sys.executable) != os.path.realpath(SYSTEM_PYTHON) and \
-            os.path.exists(SYSTEM_PYTHON) and \
-            subprocess.run([SYSTEM_PYTHON, "-c", "import numpy, matplotlib"], check=False,
-                           capture_output=True).returncode == 0:
-        os.execv(SYSTEM_PYTHON, [SYSTEM_PYTHON, "-B", *sys.argv])
-    print(f"report: Python has no {' and no '.join(missing)}: install the package python3-"
-          f"{' and python3-'.join(missing)} (apt-get install "
-          f"{' '.join(f'python3-{name}' for name in missing)})", file=sys.stderr)
+    if python:
+        os.execv(python, [python, "-B", *sys.argv])
+    missing = [f"python3-{name}" for name in NEEDED if importlib.util.find_spec(name) is None]
+    print(f"report: Python lacks what draws the plots: apt-get install {' '.join(missing)}",
+          file=sys.stderr)
     sys.exit(4)

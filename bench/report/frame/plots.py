@@ -63,7 +63,9 @@ def save(figure, path):
 
 
 def inline(text):
-    """An SVG for within a page: without its own colours, and as wide as there is place."""
-    text = text.replace(STANDALONE, "")
-    return re.sub(r'(<svg [^>]*?)\bheight="[^"]*"([^>]*?)\bwidth="([\d.]+)pt"', 
-                  r'\1\2 style="max-width:\3pt"', text, count=1)
+    """An SVG for within a page: in the page's colours, as wide as there is place but no wider than
+    it was drawn."""
+    head, _, rest = text.replace(STANDALONE, "").partition(">")
+    width = re.search(r' width="([\d.]+)pt"', head)[1]
+    head = re.sub(r' (?:width|height)="[^"]*"', "", head)
+    return f'{head} style="max-width:{width}pt">{rest}'

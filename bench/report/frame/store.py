@@ -5,6 +5,15 @@ import json
 from frame import files
 
 
+def read(line):
+    """A record, or None for a line that somebody has torn: it is measured again."""
+    try:
+        record = json.loads(line)
+        return record if record["digest"] and record["lines"] else None
+    except (ValueError, KeyError, TypeError):
+        return None
+
+
 class Store:
     """Records by their digest. A record with a failure is kept for the tables of its run only."""
 
@@ -17,9 +26,9 @@ class Store:
             self.records[name] = {}
             path = self.path(name)
             if path.is_file():
-                for line in path.read_text(encoding="utf-8").splitlines():
-                    record = json.loads(line)
-                    self.records[name][record["digest"]] = record
+                for record in map(read, path.read_text(encoding="utf-8").splitlines()):
+                    if record:
+                        self.records[name][record["digest"]] = record
         return self.records[name]
 
     def path(self, name):
