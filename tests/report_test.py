@@ -128,8 +128,8 @@ class MeasuringTest(unittest.TestCase):
         self.assertEqual(self.times(), 2)
 
     def test_failures_are_told_and_tried_again(self):
-        self.assertIn("NameError", self.measure("nonsense")[0]["failure"])
-        self.assertIn("NameError", self.measure("nonsense")[0]["failure"])
+        self.assertIn("no JSON", self.measure("nonsense")[0]["failure"])
+        self.assertIn("no JSON", self.measure("nonsense")[0]["failure"])
         self.assertEqual(self.times(), 2)
         self.assertFalse((self.out / "measurements/s.jsonl").exists())
 

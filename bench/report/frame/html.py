@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The report as one HTML file: pictures inside, light and dark, nothing loaded from elsewhere."""
 import base64
+import itertools
 import re
 from html import escape
 
@@ -43,8 +44,6 @@ def marked_up(text):
 
 def cell_html(cell, column, sources):
     text = escape(plain(cell, column.digits))
-    if isinstance(cell, Missing):
-        return f'<td class="missing">{text}</td>'
     value = cell
     if isinstance(cell, Published):
         value = cell.value
@@ -54,12 +53,24 @@ def cell_html(cell, column, sources):
     return f"<td{kind}>{text}</td>"
 
 
+def row_html(row, columns, sources):
+    """Cells side by side that miss for the same reason are one."""
+    out = []
+    for cell, group in itertools.groupby(
+            columns, lambda column: row[column.key] if isinstance(row[column.key], Missing)
+            else column.key):
+        group = list(group)
+        if isinstance(cell, Missing):
+            out.append(f'<td class="missing" colspan="{len(group)}">{escape(plain(cell, 0))}</td>')
+        else:
+            out += [cell_html(row[column.key], column, sources) for column in group]
+    return f"<tr>{''.join(out)}</tr>"
+
+
 def table_html(table):
     sources = table.sources()
     heads = "".join(f'<th scope="col">{escape(column.heading())}</th>' for column in table.columns)
-    rows = "\n".join(
-        "<tr>" + "".join(cell_html(row[column.key], column, sources) for column in table.columns)
-        + "</tr>" for row in table.rows)
+    rows = "\n".join(row_html(row, table.columns, sources) for row in table.rows)
     notes = [f"<sup>{mark_of(source, sources)}</sup> published: {escape(source)}"
              for source in sources]
     notes += [marked_up(note) for note in table.notes]
