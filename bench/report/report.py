@@ -8,14 +8,11 @@ the same programs have measured of the same input is not measured again.
 """
 import argparse
 import importlib
-import importlib.util
 import os
 import shlex
 import shutil
 import sys
 import tomllib
-import traceback
-from dataclasses import dataclass, field
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -23,8 +20,7 @@ sys.path[:0] = [str(HERE), str(HERE.parent)]
 from frame import interpreter  # noqa: E402
 
 interpreter.ensure_matplotlib()
-from frame import check, files, html, machine, markdown, scans  # noqa: E402
-from frame.cells import exact  # noqa: E402
+from frame import check, files, html, machine, markdown, parts, scans  # noqa: E402
 from frame.context import Context  # noqa: E402
 
 SECTIONS = ("one_to_one", "continuous", "upsampling", "maps", "timing", "rate_distortion",
@@ -36,16 +32,6 @@ PROGRAMS = ("report_measure", "rate_distortion")
 
 class Stop(Exception):
     """The report cannot be made, and why."""
-
-
-@dataclass
-class Part:
-    """What a section gave."""
-    name: str
-    title: str
-    tables: list = field(default_factory=list)
-    figures: list = field(default_factory=list)
-    failure: str = ""
 
 
 def arguments():
@@ -63,6 +49,9 @@ def arguments():
     parser.add_argument("--all", action="store_true", help="every scan of CURLIDAR_DATA")
     parser.add_argument("--sections", metavar="LIST", default=",".join(SECTIONS),
                         help=f"only these, of {','.join(SECTIONS)}")
+    parser.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1), metavar="N",
+                        help="sections measured at once, one thread each, those that take times "
+                             "always alone (default: %(default)s)")
     parser.add_argument("--check", action="store_true",
                         help="also check that the tables are complete and sane; exit code 1 if not")
     options = parser.parse_args()
@@ -109,24 +98,6 @@ def context_of(options):
                    published, options.quick, options.all)
 
 
-def part_of(context, name, section, command):
-    """Measures a section and asks for its tables and figures. One that fails costs only itself."""
-    part = Part(name, section.TITLE)
-    try:
-        section.measure(context)
-        part.tables = section.tables(context)
-        for table in part.tables:
-            table.command = table.command or command
-            columns = [column.key for column in table.columns]
-            files.write_csv(context.out / "tables" / f"{table.id}.csv", columns,
-                            [[exact(row[key]) for key in columns] for row in table.rows])
-        part.figures = section.figures(context)
-    except Exception as error:  # pylint: disable=broad-except
-        traceback.print_exc()
-        part.failure = f"{type(error).__name__}: {error}"
-    return part
-
-
 def command_of(options, section=None):
     """What makes this report, or a section of it, again; of files only their names."""
     words = [Path(name).name for name in options.scans]
@@ -136,25 +107,23 @@ def command_of(options, section=None):
     return f"{options.name} {shlex.join(words)}".strip()
 
 
-def write_report(context, options, parts):
+def write_report(context, options, done):
     header = machine.header(context, command_of(options))
-    files.write(context.out / "report.md", markdown.page(header, parts))
-    page = html.page(header, parts, context.out / "figures")
+    files.write(context.out / "report.md", markdown.page(header, done))
+    page = html.page(header, done, context.out / "figures")
     files.write(context.out / "index.html", page)
     return page
 
 
 def make(options):
     context = context_of(options)
-    modules = [importlib.import_module(f"sections.{name}") for name in options.sections
-               if importlib.util.find_spec(f"sections.{name}")]
-    parts = []
-    for module in modules:
-        name = module.__name__.partition(".")[2]
-        context.progress(f"[{len(parts) + 1}/{len(modules)}] {module.TITLE}")
-        parts.append(part_of(context, name, module, command_of(options, name)))
-    page = write_report(context, options, parts)
-    wrong = check.report(context, parts, modules, page) if options.check else []
+    done = [parts.Part(name, importlib.import_module(f"sections.{name}"), command_of(options, name))
+            for name in options.sections]
+    parts.measure_all(context, done, options.jobs)
+    for part in done:
+        parts.fill(context, part)
+    page = write_report(context, options, done)
+    wrong = check.report(context, done, page) if options.check else []
     context.clean()
     for line in wrong:
         print(f"check: {line}", file=sys.stderr)
@@ -162,7 +131,7 @@ def make(options):
         print("check: nothing is wrong", file=sys.stderr)
     print(f"{context.store.measured} measured, {context.store.reused} stored already. "
           f"Report: {options.out / 'index.html'}", file=sys.stderr)
-    return 1 if wrong or any(part.failure for part in parts) else 0
+    return 1 if wrong or any(part.failure for part in done) else 0
 
 
 def main():

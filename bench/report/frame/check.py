@@ -4,7 +4,6 @@ import csv
 import re
 import xml.etree.ElementTree
 
-from frame.cells import Missing, Published
 
 
 def measured(cell):
@@ -20,11 +19,6 @@ def cells_of(table):
                 continue
             if value < 0 or column.check == "share" and value > 1:
                 yield f"table {table.id}, row {i}: {column.key} is {value:g}"
-
-
-def has_measured(table):
-    """Whether a table holds any figure of this run."""
-    return any(measured(row[column.key]) for row in table.rows for column in table.columns)
 
 
 def falls(table, by, value, group):
@@ -83,12 +77,12 @@ def page_of(text):
         yield f"index.html: {found:.60}"
 
 
-def part_of(part, section, context):
+def part_of(part, context):
     if part.failure:
         yield f"section {part.name} failed: {part.failure}"
         return
     there = {table.id for table in part.tables}
-    for wanted in getattr(section, "TABLES", ()):
+    for wanted in getattr(part.section, "TABLES", ()):
         if wanted not in there:
             yield f"section {part.name}: table {wanted} is missing"
     for table in part.tables:
@@ -96,19 +90,17 @@ def part_of(part, section, context):
         yield from file_of(table, context.out / "tables")
     for figure in part.figures:
         yield from figure_of(figure, context.out)
-    if hasattr(section, "check"):
-        yield from section.check(context, part.tables)
+    if hasattr(part.section, "check"):
+        yield from part.section.check(context, part.tables)
 
 
-def report(context, parts, sections, page):
-    """Everything that is wrong. `sections`: the modules of the parts."""
+def report(context, parts, page):
+    """Everything that is wrong."""
     wrong = [f"a measurement failed: {failure}" for failure in context.store.failures()]
     names = [table.id for part in parts for table in part.tables]
     names += [figure.id for part in parts for figure in part.figures]
     wrong += [f"{name} is there twice" for name in sorted(set(names)) if names.count(name) > 1]
-    for part, section in zip(parts, sections):
-        wrong += part_of(part, section, context)
+    for part in parts:
+        wrong += part_of(part, context)
     return wrong + list(page_of(page))
 
-
-__all__ = ["Missing", "Published", "falls", "has_measured", "report"]

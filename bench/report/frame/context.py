@@ -3,6 +3,7 @@
 import json
 import shutil
 import sys
+import threading
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,6 +23,10 @@ class Made:
     command: tuple
 
 
+class Stopped(BaseException):
+    """Somebody stopped the run: nothing more is started."""
+
+
 class Context:
     """`out`: the report's folder. `scratch`: files of this run, removed when it is complete.
     `curlidar`: the command. `bin`: folder of report_measure and rate_distortion.
@@ -33,7 +38,8 @@ class Context:
         self.scans, self.scenes, self.published = scans, scenes, published
         self.quick, self.every = quick, every
         self.store = Store(out / "measurements")
-        self._digests = {}
+        self.stopping = False
+        self._digests, self._making, self._lock = {}, {}, threading.Lock()
 
     @property
     def inputs(self):
@@ -49,7 +55,7 @@ class Context:
         lines = self.store.get(section, name)
         if lines is None and (lines := self.store.failed(section, name)) is None:
             self.progress(f"{section}: " + ", ".join(str(value) for value in key.values()))
-            lines = self._run(command)
+            lines = self._lines(command)
             said = [part.name if isinstance(part, Path) else str(part)
                     for part in map(self._plain, command)]
             self.store.add(section, name, key, " ".join(said), lines)
@@ -66,11 +72,14 @@ class Context:
 
     def make(self, made):
         """The path of a file that must be there now; raises run.CommandFailed."""
-        if not made.path.is_file():
-            self.scratch.mkdir(parents=True, exist_ok=True)
-            part = made.path.with_name("part-" + made.path.name)  # keeps the ending
-            run.output_of([part if each is OUTPUT else self._ready(each) for each in made.command])
-            part.replace(made.path)
+        with self._lock:
+            making = self._making.setdefault(made.path, threading.Lock())
+        with making:  # sections that need it at once make it once
+            if not made.path.is_file():
+                self.scratch.mkdir(parents=True, exist_ok=True)
+                part = made.path.with_name("part-" + made.path.name)  # keeps the ending
+                self._run([part if each is OUTPUT else self._ready(each) for each in made.command])
+                part.replace(made.path)
         return made.path
 
     def cloud(self, item):
@@ -113,9 +122,21 @@ class Context:
         shutil.rmtree(self.scratch, ignore_errors=True)
 
     def _run(self, command):
+        if self.stopping:
+            raise Stopped
+        output = run.output_of(command)
+        if self.stopping:  # what was interrupted may have ended as if it were complete
+            raise Stopped
+        return output
+
+    def _lines(self, command):
+        """The objects that a command prints, or [{"failure": why}]."""
         try:
-            return run.measure([self._ready(part) for part in command])
+            found = run.objects_in(self._run([self._ready(part) for part in command]))
+            return found or [{"failure": "nothing was printed"}]
         except run.CommandFailed as error:
+            if self.stopping:
+                raise Stopped from error
             return [{"failure": str(error)}]
 
     def _ready(self, part):

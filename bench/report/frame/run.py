@@ -36,10 +36,3 @@ def objects_in(text):
         found.append(each)
     return found
 
-
-def measure(command):
-    """The objects that a command prints, or [{"failure": why}]."""
-    try:
-        return objects_in(output_of(command)) or [{"failure": "nothing was printed"}]
-    except CommandFailed as error:
-        return [{"failure": str(error)}]

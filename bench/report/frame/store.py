@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What was measured, one file of JSON lines for each section."""
 import json
+import threading
 
 from frame import files
 
@@ -20,6 +21,7 @@ class Store:
     def __init__(self, folder):
         self.folder, self.records, self.used = folder, {}, {}
         self.measured = self.reused = 0
+        self.lock = threading.RLock()
 
     def section(self, name):
         if name not in self.records:
@@ -36,23 +38,25 @@ class Store:
 
     def get(self, name, digest):
         """The lines stored, or None. They count as used in this run."""
-        record = self.section(name).get(digest)
-        if record is None:
-            return None
-        if digest not in self.used.setdefault(name, {}):
-            self.reused += 1
-        self.used[name][digest] = record
-        return record["lines"]
+        with self.lock:
+            record = self.section(name).get(digest)
+            if record is None:
+                return None
+            if digest not in self.used.setdefault(name, {}):
+                self.reused += 1
+            self.used[name][digest] = record
+            return record["lines"]
 
     def add(self, name, digest, key, command, lines):
         record = {"digest": digest, "key": key, "command": command, "lines": lines}
-        self.used.setdefault(name, {})[digest] = record
-        if any("failure" in line for line in lines):
-            return
-        self.measured += 1
-        self.section(name)[digest] = record
-        files.write(self.path(name), "".join(
-            json.dumps(each) + "\n" for each in self.records[name].values()))
+        with self.lock:
+            self.used.setdefault(name, {})[digest] = record
+            if any("failure" in line for line in lines):
+                return
+            self.measured += 1
+            self.section(name)[digest] = record
+            files.write(self.path(name), "".join(
+                json.dumps(each) + "\n" for each in self.records[name].values()))
 
     def failed(self, name, digest):
         """The lines of a measurement that failed in this run, or None."""

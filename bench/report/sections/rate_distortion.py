@@ -11,6 +11,7 @@ from sections.rate_distortion_curves import (
     inputs_of, key_of, length, lines_of, raw_curves, title_of)
 
 TITLE = "Bits against error, beside the peer codecs"
+TIMED = True  # measured alone
 TABLES = ("rate-distortion",)
 TIMES_AT_M, BACK_AT_M = .01, (.005, .05)
 
