@@ -28,7 +28,7 @@ th,td{padding:.3rem .6rem;border-bottom:1px solid var(--line);text-align:left;
 vertical-align:top}
 thead th{border-bottom:2px solid var(--line);vertical-align:bottom}
 tbody tr:nth-child(even){background:var(--band)}
-td.number{text-align:right;white-space:nowrap}td.missing{color:var(--soft);min-width:8rem}
+td.text{min-width:8rem}td.number{text-align:right;white-space:nowrap}td.missing{color:var(--soft);min-width:8rem}
 sup{color:var(--link);line-height:0}
 .counts,.notes,figcaption{color:var(--soft);font-size:13.5px;max-width:60rem}
 .counts{margin:.2rem 0}.notes{padding-left:1.2rem}
@@ -49,8 +49,8 @@ def cell_html(cell, column, sources):
         value = cell.value
         text += (f'<sup title="published: {escape(cell.source, quote=True)}">'
                  f"{mark_of(cell.source, sources)}</sup>")
-    kind = "" if isinstance(value, str) else ' class="number"'
-    return f"<td{kind}>{text}</td>"
+    kind = "text" if isinstance(value, str) else "number"
+    return f'<td class="{kind}">{text}</td>'
 
 
 def row_html(row, columns, sources):

@@ -32,6 +32,15 @@ def commit():
     return said_by("git", "-C", here, "describe", "--always", "--dirty") or "not of a checkout"
 
 
+def peers(context):
+    """Which other codecs took part, as the section on rate and distortion has measured them."""
+    rows = [line for line in context.store.lines("rate_distortion") if line.get("codec")]
+    there = sorted({row["codec"] for row in rows if "bytes" in row} - {"curlidar"})
+    absent = sorted({row["codec"] for row in rows if "skipped" in row} - set(there))
+    text = ", ".join(there) or "none measured in this run"
+    return text + (f"; not there: {', '.join(absent)}" if absent else "")
+
+
 def header(context, command_line):
     """(name, value) pairs for the head of the report."""
     now = datetime.datetime.now(datetime.timezone.utc)
@@ -42,7 +51,8 @@ def header(context, command_line):
         ("version", f"{said_by(context.curlidar, '--version')}, commit {commit()}"),
         ("machine", f"{cpu()}, {len(os.sched_getaffinity(0))} cores, "
                     f"{platform.system()} {platform.machine()}"),
-        ("compiler", said_by("c++", "--version") or "not installed"),
+        ("compiler here", said_by("c++", "--version") or "none"),
+        ("peer codecs", peers(context)),
         ("real scans", scans),
         ("simulated scenes", ", ".join(f"{scene.name} ({scene.sensor}, seed {scene.seed})"
                                        for scene in context.scenes)),

@@ -68,6 +68,10 @@ class Store:
         return [{**line, **record["key"]}
                 for record in self.used.get(name, {}).values() for line in record["lines"]]
 
+    def lines(self, name):
+        """The same as they were printed."""
+        return [line for record in self.used.get(name, {}).values() for line in record["lines"]]
+
     def failures(self):
         return [f"{name} {record['key']}: {line['failure']}"
                 for name, records in self.used.items() for record in records.values()
