@@ -46,6 +46,18 @@ class InstallTest(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertIn(f"curlidar {VERSION}", done.stdout)
 
+    def test_report_runs_from_where_it_is_installed(self):
+        if not (self.prefix / "libexec/curlidar/report_measure").is_file():
+            self.skipTest("built without benchmarks")
+        out = Path(self.scratch.name) / "report"
+        clean = {key: value for key, value in os.environ.items() if not key.startswith("CURLIDAR")}
+        done = run(self.prefix / "bin/curlidar", "report", "--simulated", "--sections", "maps",
+                   "--check", "-o", out, env=clean)
+        if "apt-get install" in done.stdout and os.environ.get("CI") != "true":
+            self.skipTest(done.stdout)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertTrue((out / "index.html").is_file())
+
     def test_other_version_is_refused(self):
         _, done = self.configure("99.0")
         self.assertNotEqual(done.returncode, 0)
