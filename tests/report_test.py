@@ -30,7 +30,8 @@ from frame.context import OUTPUT, Context  # noqa: E402
 from frame.tables import Column, Figure, Table  # noqa: E402
 
 COMMAND = os.environ.get("CURLIDAR")
-COLUMNS = [Column("name", "codec"), Column("error", "error", "m"), Column("share", "F", check="share")]
+COLUMNS = [Column("name", "codec"), Column("error", "error", "m"),
+           Column("share", "F", check="share")]
 
 
 def table(**cells_of_row):
@@ -42,8 +43,9 @@ class CellsTest(unittest.TestCase):
     def test_empty_cells_are_refused(self):
         for value in (None, "", " ", float("nan"), float("inf"), [1], cells.Missing(""),
                       cells.Published(None, "a book")):
-            with self.subTest(value=value), self.assertRaisesRegex(cells.BadCell, "row 1, column error"):
-                table(error=value)
+            with self.subTest(value=value):
+                with self.assertRaisesRegex(cells.BadCell, "row 1, column error"):
+                    table(error=value)
         with self.assertRaises(cells.BadCell):
             Table("t", "A table", "every return.", COLUMNS, [{"name": "a", "error": 1}])
         with self.assertRaises(cells.BadCell):
@@ -60,7 +62,8 @@ class CellsTest(unittest.TestCase):
         self.assertRegex(page, r"0\.25<sup title=\"published: a book\">†</sup>")
 
     def test_sources_are_told_apart(self):
-        rows = [{"name": "a", "error": cells.Published(1, "one"), "share": cells.Published(2, "two")}]
+        rows = [{"name": "a", "error": cells.Published(1, "one"),
+                 "share": cells.Published(2, "two")}]
         text = "\n".join(markdown.lines_of(Table("t", "T", "all.", COLUMNS, rows)))
         self.assertIn("| 1 †1 | 2 †2 |", text)
 
@@ -80,14 +83,16 @@ class CheckTest(unittest.TestCase):
         self.assertEqual(list(check.cells_of(table(error=cells.Published(-1, "a book")))), [])
 
     def test_rates_fall_as_errors_grow(self):
-        def rows(*pairs):
-            return Table("t", "T", "all.", COLUMNS, [
-                {"name": "a", "error": error, "share": share} for error, share in pairs])
-        self.assertEqual(list(check.falls(rows((.1, .2), (.01, .5)), "error", "share", ["name"])), [])
-        self.assertEqual(len(list(check.falls(rows((.1, .6), (.01, .5)), "error", "share", ["name"]))), 1)
+        def complaints(*pairs):
+            rows = [{"name": "a", "error": error, "share": share} for error, share in pairs]
+            return list(check.falls(Table("t", "T", "all.", COLUMNS, rows), "error", "share",
+                                    ["name"]))
+        self.assertEqual(complaints((.1, .2), (.01, .5)), [])
+        self.assertEqual(len(complaints((.1, .6), (.01, .5))), 1)
 
     def test_pages_that_load_something_are_told(self):
-        self.assertEqual(list(check.page_of('<a href="#x"><img src="data:image/png;base64,AA">')), [])
+        good = '<a href="#x"><img src="data:image/png;base64,AA">'
+        self.assertEqual(list(check.page_of(good)), [])
         for bad in ('<img src="a.png">', '<a href="https://a.b/">', "<script>", "<link rel=x>",
                     "url(https://a.b/c)", '@import "a"', '<img src="//a.b/c">'):
             self.assertEqual(len(list(check.page_of(bad))), 1, bad)
@@ -135,9 +140,11 @@ class MeasuringTest(unittest.TestCase):
 
     def test_files_are_made_when_they_are_needed(self):
         context = self.context()
-        made = context.made(".txt", [sys.executable, "-c", "import sys; open(sys.argv[1], 'w').write('7')", OUTPUT])
+        made = context.made(".txt", [
+            sys.executable, "-c", "import sys; open(sys.argv[1], 'w').write('7')", OUTPUT])
         self.assertFalse(made.path.exists())
-        command = [sys.executable, "-c", "import sys; print('{\"read\":', open(sys.argv[1]).read(), '}')", made]
+        command = [sys.executable, "-c",
+                   "import sys; print('{\"read\":', open(sys.argv[1]).read(), '}')", made]
         self.assertEqual(context.measure("s", {}, command), [{"read": 7}])
         self.assertTrue(made.path.exists())
         context.clean()
@@ -174,7 +181,8 @@ class ScansTest(unittest.TestCase):
             self.assertEqual(names([], data, True, False), ["kitti_raw/a.bin", "kitti_raw/b.bin"])
             self.assertEqual(names([other], data, False, False), ["c.pcd"])
             self.assertEqual(names([other, data], data, False, True), ["kitti_raw/a.bin"])
-            self.assertTrue(scans.chosen([data / "kitti_raw/b.bin"], data, False, False)[0].is_kitti)
+            named = scans.chosen([data / "kitti_raw/b.bin"], data, False, False)
+            self.assertTrue(named[0].is_kitti)
             with self.assertRaises(scans.NoScans):
                 scans.chosen([other / "none"], data, False, False)
 
@@ -189,7 +197,8 @@ class Page(HTMLParser):
 
     def handle_starttag(self, tag, attrs):
         found = dict(attrs)
-        self.loads += [value for key, value in found.items() if key in ("src", "srcset", "data", "poster")]
+        self.loads += [value for key, value in found.items()
+                       if key in ("src", "srcset", "data", "poster")]
         self.loads += [found["href"]] if tag in ("link", "image") and "href" in found else []
         if tag == "td":
             self.cells.append("")
@@ -312,7 +321,8 @@ class WordsTest(unittest.TestCase):
     @unittest.skipUnless(COMMAND, "CURLIDAR names no command")
     def test_no_such_scan_and_no_place_for_the_report(self):
         with tempfile.TemporaryDirectory() as name:
-            self.assertIn("none.pcd: no such file", self.fails("-o", f"{name}/r", f"{name}/none.pcd"))
+            said = self.fails("-o", f"{name}/r", f"{name}/none.pcd")
+            self.assertIn("none.pcd: no such file", said)
             (Path(name) / "file").touch()
             self.assertIn(f"{name}/file", self.fails("-o", f"{name}/file/r", "--simulated"))
 
@@ -320,8 +330,8 @@ class WordsTest(unittest.TestCase):
     def test_the_command_finds_and_starts_the_report(self):
         with tempfile.TemporaryDirectory() as name:
             done = subprocess.run(
-                [COMMAND, "report", "--simulated", "--sections", "maps", "--check", "-o", f"{name}/r"],
-                capture_output=True, text=True, check=False,
+                [COMMAND, "report", "--simulated", "--sections", "maps", "--check", "-o",
+                 f"{name}/r"], capture_output=True, text=True, check=False,
                 env={**os.environ, "CURLIDAR_REPORT_DIR": str(REPORT.parent)})
             self.assertEqual(done.returncode, 0, done.stderr)
             text = (Path(name) / "r/report.md").read_text(encoding="utf-8")
@@ -332,7 +342,8 @@ class WordsTest(unittest.TestCase):
 
     def test_missing_packages_are_named(self):
         code = ("import sys; sys.path.insert(0, sys.argv[1]); from frame import interpreter as i; "
-                "i.NEEDED = ('no_such_module',); i.SYSTEM_PYTHON = '/nowhere'; i.ensure_matplotlib()")
+                "i.NEEDED = ('no_such_module',); i.SYSTEM_PYTHON = '/nowhere'; "
+                "i.ensure_matplotlib()")
         done = subprocess.run([sys.executable, "-c", code, REPORT.parent], capture_output=True,
                               text=True, check=False)
         self.assertEqual(done.returncode, 4)
@@ -351,7 +362,8 @@ class FigureTest(unittest.TestCase):
             text = path.read_text(encoding="utf-8")
             self.assertTrue("currentColor" in text)
             self.assertFalse(plots.INK in text)
-            self.assertEqual(list(check.figure_of(Figure("a-plot", "A", "B", "svg", "x"), Path(name))), [])
+            drawn = Figure("a-plot", "A", "B", "svg", "x")
+            self.assertEqual(list(check.figure_of(drawn, Path(name))), [])
             inline = plots.inline(text)
             self.assertFalse("<style>:root" in inline)
             self.assertTrue("max-width" in inline.partition(">")[0], inline[:300])

@@ -32,7 +32,8 @@ class Context:
     `curlidar`: the command. `bin`: folder of report_measure and rate_distortion.
     `scans`, `scenes`: real and simulated input. `published`: published.toml as it is."""
 
-    def __init__(self, out, curlidar, bin_folder, scans, scenes, published, quick=False, every=False):
+    def __init__(self, out, curlidar, bin_folder, scans, scenes, published, quick=False,
+                 every=False):
         self.out, self.scratch = out, out / "scratch"
         self.curlidar, self.bin = curlidar, bin_folder
         self.scans, self.scenes, self.published = scans, scenes, published

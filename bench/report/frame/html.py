@@ -28,7 +28,8 @@ th,td{padding:.3rem .6rem;border-bottom:1px solid var(--line);text-align:left;
 vertical-align:top}
 thead th{border-bottom:2px solid var(--line);vertical-align:bottom}
 tbody tr:nth-child(even){background:var(--band)}
-td.text{min-width:8rem}td.number{text-align:right;white-space:nowrap}td.missing{color:var(--soft);min-width:8rem}
+td.number{text-align:right;white-space:nowrap}td.text,td.missing{min-width:8rem}
+td.missing{color:var(--soft)}
 sup{color:var(--link);line-height:0}
 .counts,.notes,figcaption{color:var(--soft);font-size:13.5px;max-width:60rem}
 .counts{margin:.2rem 0}.notes{padding-left:1.2rem}

@@ -37,7 +37,8 @@ class Table:
         if not ID.match(self.id):
             raise BadCell(f"table '{self.id}': an id is made of a-z, 0-9, '.', '_' and '-'")
         if not self.rows or not self.columns or not self.counts.strip():
-            raise BadCell(f"table {self.id}: no rows, no columns, or it does not say what it counts")
+            raise BadCell(f"table {self.id}: no rows, no columns, or it does not say what it "
+                          "counts")
         for i, row in enumerate(self.rows, 1):
             for column in self.columns:
                 refuse_bad(row.get(column.key), f"table {self.id}, row {i}, column {column.key}")

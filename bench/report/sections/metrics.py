@@ -5,7 +5,6 @@ from frame import files
 from frame.cells import Missing
 from frame.check import falls
 from frame.context import OUTPUT
-from frame.scans import Scan
 from frame.tables import Column, Table
 
 TITLE = "Our codec in the metrics of the literature"
@@ -105,15 +104,17 @@ KEYS = [Column("input", "scan"), Column("target_m", "asked for", "m", ".3g")]
 DISTANCES = [
     *KEYS, Column("points", "points"), Column("points_back", "points back"),
     Column("bits", "bits a point", digits=2), Column("float_percent", "of float32", "%", 2),
-    Column("to_decoded_mean_m", "raw to decoded, mean", "m", 4), Column("to_decoded_std_m", "std", "m", 4),
-    Column("to_decoded_p95_m", "p95", "m", 4), Column("to_decoded_max_m", "max", "m", 2),
+    Column("to_decoded_mean_m", "raw to decoded, mean", "m", 4),
+    Column("to_decoded_std_m", "std", "m", 4), Column("to_decoded_p95_m", "p95", "m", 4),
+    Column("to_decoded_max_m", "max", "m", 2),
     Column("to_raw_mean_m", "decoded to raw, mean", "m", 4), Column("to_raw_std_m", "std", "m", 4),
     Column("to_raw_p95_m", "p95", "m", 4), Column("to_raw_max_m", "max", "m", 2),
     Column("own_m", "to its own original, mean", "m", 4)]
 QUALITY = [
     *KEYS, Column("bits", "bits a point", digits=2), Column("d1_db", "D1 PSNR", "dB", 2),
     Column("rms_mm", "RMS of it", "mm", 2), Column("d2_db", "D2 PSNR", "dB", 2),
-    Column("plane_rms_mm", "RMS of it", "mm", 2), Column("chamfer_m2", "Chamfer, sum of squared", "m²", 5),
+    Column("plane_rms_mm", "RMS of it", "mm", 2),
+    Column("chamfer_m2", "Chamfer, sum of squared", "m²", 5),
     Column("chamfer_m", "Chamfer, mean of means", "m", 4),
     *(Column(f"f_{mm}", f"F at {mm // 10} cm", check="share") for mm in (20, 50, 100, 200)),
     Column("complete_50", "complete within 5 cm", check="share"),
@@ -131,8 +132,7 @@ def rows_of(context):
 
 def tables(context):
     rows = rows_of(context)
-    real = [item.name for item in context.inputs if isinstance(item, Scan)]
-    notes = [f"simulated: {', '.join(dict.fromkeys(row['input'] for row in rows if row['input'] not in real))}"]
+    notes = [f"simulated: {', '.join(scene.name for scene in context.scenes)}"]
     return [
         Table("metrics-distances", "Distances to the nearest neighbour, both ways",
               "every return of the raw scan, each decoded back; attributes are not coded.",

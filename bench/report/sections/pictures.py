@@ -50,8 +50,8 @@ def pictures_of(context, item):
                              coded_of(context, item, "paper"))
     view, name, asked = camera(item), item.id.lower(), QUICK_ERROR_M if context.quick else ERROR_M
     yield (f"density-{name}", f"{item.name}: original, decoded, decoded 8 times denser",
-           f"Left the scan, in the middle its compact file at {asked * 100:g} cm mean error decoded "
-           "as it is, right decoded with eight times as many rows; coloured by height.",
+           f"Left the scan, in the middle its compact file at {asked * 100:g} cm mean error "
+           "decoded as it is, right decoded with eight times as many rows; coloured by height.",
            [drawn(context, cloud, *view, "--title", "original"),
             drawn(context, compact, *view, "--title", "1x"),
             drawn(context, compact, *view, "--rows", "8", "--title", "8x")])
