@@ -35,7 +35,9 @@ endif()
 
 # `curlidar report`: scripts and measuring programs, where the benchmarks are built.
 if(CURLIDAR_BUILD_APP AND CURLIDAR_BUILD_BENCH)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/bench/report ${PROJECT_SOURCE_DIR}/bench/common
+  set(report_folders report common peers rate_distortion raw)  # the last three: for their scripts
+  list(TRANSFORM report_folders PREPEND ${PROJECT_SOURCE_DIR}/bench/)
+  install(DIRECTORY ${report_folders}
     DESTINATION ${CMAKE_INSTALL_DATADIR}/curlidar COMPONENT report
     FILES_MATCHING PATTERN "*.py" PATTERN "published.toml"
     PATTERN "__pycache__" EXCLUDE PATTERN "measure" EXCLUDE)

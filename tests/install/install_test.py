@@ -58,6 +58,15 @@ class InstallTest(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout)
         self.assertTrue((out / "index.html").is_file())
 
+    def test_scripts_that_the_report_starts_are_installed(self):
+        if not (self.prefix / "libexec/curlidar/report_measure").is_file():
+            self.skipTest("built without benchmarks")
+        scripts = self.prefix / "share/curlidar"
+        self.assertTrue((scripts / "peers/external.py").is_file())
+        for name in ("raw/line.py", "rate_distortion/lines.py"):
+            done = run(sys.executable, "-B", scripts / name)  # its imports are there too
+            self.assertIn("usage:", done.stdout)
+
     def test_other_version_is_refused(self):
         _, done = self.configure("99.0")
         self.assertNotEqual(done.returncode, 0)

@@ -14,7 +14,7 @@ ERRORS_M = (.001, .005, .01, .02, .05)
 QUICK_ERRORS_M = (.005, .02, .05)
 QUICK_SETTINGS = 6  # of each peer
 QUICK_CODECS = ("pcl-octree", "draco-kd-tree", "xyz-zstd19", "jpeg-xl-e9-1024", "jpeg-xl-e9-2048",
-                "range-zstd19-2048")
+                "range-zstd19-2048", "range-zstd19-4096")
 OURS = "curlidar"
 TITLES = {
     OURS: "curlidar", f"{OURS}, effort 9": "curlidar, effort 9",
