@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reconstruction between the rings of a real scan: rings 0, K, 2K .. are coded, the returns of the
 // rings between them are predicted in their exact directions.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -30,13 +31,15 @@ std::string why_not(const Detection& detection, std::uint32_t every) {
   return {};
 }
 
-/// The paper's settings for fewer rows. Rows spread evenly over the field of view are not where the
-/// rings of every sensor are, and fewer of them miss by more: rows are the rings. What is farther
-/// from the next row than a cliff allows must be allowed to be so by as much more.
+/// The paper's settings for fewer rows. No more columns than the sensor has, or directions between
+/// them would see empty cells for cliffs. Rows spread evenly over the field of view are not where
+/// the rings of every sensor are, and fewer of them miss by more: rows are the rings. What is
+/// farther from the next row than a cliff allows must be allowed to be so by as much more.
 EncodeSettings for_every_nth(EncodeSettings settings, const SensorProfile& sensor,
                              std::uint32_t every) {
   settings.sensor = sensor;
   settings.paper.row_rule = RowRule::rings;
+  settings.paper.columns = std::min(settings.paper.columns, sensor.columns);
   CliffThresholds& cliffs = settings.paper.cliffs;
   cliffs.row_m *= every;
   cliffs.diagonal_m = std::hypot(cliffs.row_m, cliffs.column_m);

@@ -24,7 +24,11 @@ struct Verb {
 
 const std::vector<Verb> kVerbs{
     {"one-to-one", 1, {"preset", "sensor"}, "SCAN [--preset P] [--sensor S]", one_to_one},
-    {"truth", 3, {"factors", "seed"}, "SCENE SENSOR PRESET [--factors 2,4,8] [--seed N]", truth},
+    {"truth",
+     3,
+     {"factors", "seed", "baseline"},
+     "SCENE SENSOR PRESET [--factors 2,4,8] [--seed N] [--baseline 1]",
+     truth},
     {"held-out",
      1,
      {"every", "preset", "sensor"},

@@ -76,6 +76,11 @@ std::vector<Method> paper_methods(const Cloud& cloud, EncodeSettings settings) {
   return methods;
 }
 
+Method baseline_method(const Cloud& cloud, EncodeSettings settings) {
+  settings.profile = Profile::paper_global;
+  return coded_method("baseline", paper_setting(settings.profile), cloud, settings);
+}
+
 std::vector<Method> make_methods(const MethodInput& input) {
   std::vector<Method> methods = paper_methods(*input.cloud, input.paper);
   for (const auto& [target, value, setting] :

@@ -38,7 +38,9 @@ struct MethodInput {
 
 /// The paper's S = 1x1, 2x1, 2x2, with the other settings as given.
 std::vector<Method> paper_methods(const Cloud& cloud, EncodeSettings settings);
-/// These; compact at 5 cm and at 1 bit a point with every return; linear and
+/// The paper's baseline, one expansion of the whole scan.
+Method baseline_method(const Cloud& cloud, EncodeSettings settings);
+/// The paper's; compact at 5 cm and at 1 bit a point with every return; linear and
 /// edge-aware interpolation.
 std::vector<Method> make_methods(const MethodInput& input);
 

@@ -53,6 +53,7 @@ Result<RangeLimits> limits_of(const Cloud& cloud, const EncodeSettings& settings
 
 Status truth(const Arguments& arguments) {
   CURLIDAR_TRY_ASSIGN(factors, parse_factors(arguments.option("factors", "2,4,8")));
+  CURLIDAR_TRY_ASSIGN(baseline, arguments.number("baseline", 0, 0, 1));
   CURLIDAR_TRY_ASSIGN(seed, arguments.number("seed", 1, 0, 1u << 30));
   CURLIDAR_TRY_ASSIGN(
       simulated, simulate_scan(arguments.words[0], arguments.words[1], arguments.words[2], seed));
@@ -60,13 +61,16 @@ Status truth(const Arguments& arguments) {
   print_line({{"returns", count_returns(simulated.cloud)},
               {"min_range_m", limits.min_m},
               {"max_range_m", limits.max_m}});
-  const std::vector<Method> methods = make_methods(
+  std::vector<Method> methods = make_methods(
       {.cloud = &simulated.cloud,
        .paper = simulated.settings,
        .compact_sensor = {},  // simulated beams start at the origin, those of profiles may not
        .ring_of_point = simulated.rings.ring_of_point,
        .ring_elevations = simulated.rings.ring_elevations,
        .columns = simulated.settings.sensor->columns});
+  if (baseline == 1) {
+    methods.insert(methods.begin(), baseline_method(simulated.cloud, simulated.settings));
+  }
   for (const Method& method : methods) {
     if (!method.sampler) {
       print_line(method.header());

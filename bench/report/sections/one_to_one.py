@@ -236,7 +236,7 @@ def draw_errors(context, direction, name):
             if curve:
                 axis.plot(*zip(*curve), color=colour(method), label=method,
                           linestyle=style(method))
-        axis.set(title=each, xscale="log", xlim=(5e-4, 1), ylim=(0, 100),
+        axis.set(title=short(each), xscale="log", xlim=(5e-4, 1), ylim=(0, 100),
                  xlabel="error (m)", ylabel="points (%)")
         plain_numbers(axis.xaxis, (1,))
     explain(axes[-1], axes[0])
@@ -273,6 +273,12 @@ def plain_numbers(axis, steps=(1, 2, 5)):
     axis.set_major_locator(ticker.LogLocator(subs=steps))
     axis.set_major_formatter(ticker.FormatStrFormatter("%g"))
     axis.set_minor_formatter(ticker.NullFormatter())
+
+
+def short(name):
+    """A scan's name as the title of a panel: its dataset, and below the end of its file's name."""
+    dataset, _, rest = name.rpartition(".")[0].partition("/") if "/" in name else (name, "", "")
+    return f"{dataset}\n{rest if len(rest) <= 30 else '..' + rest[-28:]}" if rest else dataset
 
 
 def colour(method):
