@@ -4,6 +4,7 @@ import json
 import shutil
 import sys
 import threading
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -39,7 +40,7 @@ class Context:
         self.scans, self.scenes, self.published = scans, scenes, published
         self.quick, self.every = quick, every
         self.store = Store(out / "measurements")
-        self.stopping = False
+        self.stopping, self._started = False, time.monotonic()
         self._digests, self._making, self._lock = {}, {}, threading.Lock()
 
     @property
@@ -117,7 +118,9 @@ class Context:
         return path
 
     def progress(self, text):
-        print(text, file=sys.stderr, flush=True)
+        """One line on standard error, with minutes and seconds since the start."""
+        minutes, seconds = divmod(int(time.monotonic() - self._started), 60)
+        print(f"{minutes:3}:{seconds:02} {text}", file=sys.stderr, flush=True)
 
     def clean(self):
         shutil.rmtree(self.scratch, ignore_errors=True)
