@@ -52,7 +52,8 @@ int main() {
   fmt::print(
       "Errors of interpolated points along their rays, metres. Complete: of the rays that meet a "
       "surface within the range limits. Sky: points where there is no surface.\n\n"
-      "| scene | sensor | preset | setting | CP % | R | points | mean | median | p95 | within 5 cm % | "
+      "| scene | sensor | preset | setting | CP % | R | points | mean | median | p95 | within 5 cm "
+      "% | "
       "complete % | sky |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Case& c : kCases) {
     const Status status = print_case(c);

@@ -9,8 +9,8 @@ TABLES = ("continuous-published",)
 FACTORS, QUICK_FACTORS = (2, 4, 8), (2, 8)
 FEWEST_COMMON = 100  # returns in common; means over fewer say nothing
 NO_FILE = Missing("raw samples, no file")
-METHODS = {"baseline": "baseline", "paper": "paper", "compact": "curlidar", "linear": "linear in 1/r",
-           "edge-aware": "edge-aware in 1/r"}
+METHODS = {"baseline": "baseline", "paper": "paper", "compact": "curlidar",
+           "linear": "linear in 1/r", "edge-aware": "edge-aware in 1/r"}
 FIGURES = [
     Column("points", "points"), Column("mean", "mean", "m", 4), Column("p50", "median", "m", 4),
     Column("p95", "p95", "m", 4), Column("rms", "rms", "m", 4),
@@ -59,7 +59,8 @@ def cells_of(line, columns):
     """A method's cells; all the same where it could not be measured."""
     who = {"method": METHODS[line["method"]], "setting": line["setting"]}
     if "skipped" in line:
-        return {**dict.fromkeys((column.key for column in columns), Missing(line["skipped"])), **who}
+        why = Missing(line["skipped"])
+        return {**dict.fromkeys((column.key for column in columns), why), **who}
     row = {**line, **who, "bits_per_point": line.get("bits_per_point", NO_FILE)}
     if "common" in line:
         enough = line["common"]["count"] >= FEWEST_COMMON
@@ -72,9 +73,9 @@ def cells_of(line, columns):
 def truth_table(context, scene):
     columns = [*IDENTITY, Column("factor", "R", digits="g"), *FIGURES, NO_SURFACE]
     lines = truth_of(context, scene)
-    notes = ["Methods reconstruct on their own grids: the paper's of 1024 columns, the rings and the "
-             "columns of the sensor for the others. linear, edge-aware: interpolation of the raw "
-             "samples themselves; edge-aware takes the nearer sample alone where two ranges "
+    notes = ["Methods reconstruct on their own grids: the paper's of 1024 columns, the rings and "
+             "the columns of the sensor for the others. linear, edge-aware: interpolation of the "
+             "raw samples themselves; edge-aware takes the nearer sample alone where two ranges "
              "differ by more than 20 %.",
              "curlidar: every return, mean error 5 cm or 1 bit a return. Errors along the ray. "
              "Completeness: share of the rays which meet a surface within the limits that get a "
@@ -85,8 +86,8 @@ def truth_table(context, scene):
         rows = [cells_of(line, columns) for line in lines if "method" in line]
         notes.insert(0, said_of(lines[0]))
     return Table(table_id("continuous-truth", scene),
-                 f"Between the rows of the simulated scan {scene.name} ({scene.sensor}), against the "
-                 "exact scene",
+                 f"Between the rows of the simulated scan {scene.name} ({scene.sensor}), against "
+                 "the exact scene",
                  "reconstructed points at R times the rows that lie on no coded row and within the "
                  "paper's range limits, each against the surface that its own ray meets.",
                  columns, rows, notes, shown(truth_command(context, "report_measure", scene)))
@@ -102,12 +103,13 @@ def held_out_table(context, scan, found):
         rows += [{**cells_of(line, columns), "every": every} for line in lines if "method" in line]
         first = lines[0]
         if "method" not in first and "skipped" not in first:
-            notes.append(f"K = {every}: {first['returns_coded']:,} returns of {first['rings_coded']} "
-                         f"of {first['rings']} rings coded, {first['returns_held_out']:,} held out; "
-                         f"{said_of(first)}")
+            notes.append(f"K = {every}: {first['returns_coded']:,} returns of "
+                         f"{first['rings_coded']} of {first['rings']} rings coded, "
+                         f"{first['returns_held_out']:,} held out; {said_of(first)}")
     notes += ["The paper's rows are these rings, since its even rows would miss them, its cliffs "
-              "between rows K times as high, and its columns no more than the sensor's. Bits are of each coded return; what there is no "
-              "return of is not known, hence no count of points without a surface.",
+              "between rows K times as high, and its columns no more than the sensor's. Bits are "
+              "of each coded return. Where no return came back nothing is known, hence no count of "
+              "points without a surface.",
               "Where all methods tell: over the held-out returns of which every method predicts a "
               "range, so that no one gains by leaving out the hard ones."]
     return Table(table_id("continuous-held-out", scan), f"Rings held out of {scan.name}",
@@ -154,19 +156,19 @@ def published(context):
                     Column(f"ours_{factor}", "mean here", "m", 4)]
     return Table(
         "continuous-published", "The paper's continuous reconstruction, published and here",
-        "published: all points of each sequence against its survey map; here: the points between the "
-        "rows of one simulated scan like it (newer-college, room), along their rays.",
+        "published: all points of each sequence against its survey map; here: the points between "
+        "the rows of one simulated scan like it (newer-college, room), along their rays.",
         columns, rows,
-        ["Other data and another measure: only the order of the methods compares. What blew up in "
-         "the published rows does not here: a patch never has more coefficients than samples, and "
-         "ranges that a fit takes out of the scan's limits are no points."])
+        ["Other data and another measure: only the order of the methods compares. Errors of many "
+         "metres as published cannot occur here: ranges that a fit takes out of the scan's limits "
+         "are no points, and a patch never has more coefficients than samples."])
 
 
 def truth_means(context, scene, method):
     """{R: mean} of a method as published.toml names it: 'paper S=2x1'."""
     def is_it(line):
-        named = "baseline" if line["method"] == "baseline" else f"{line['method']} {line['setting']}"
-        return named.replace("S ", "S=") == method
+        named = f"{line['method']} {line['setting']}".replace("S ", "S=")
+        return method in (named, line["method"])
 
     return {line["factor"]: line["mean"] for line in truth_of(context, scene)
             if "mean" in line and is_it(line)}
@@ -212,14 +214,14 @@ def figures(context):
             ("continuous-truth", truth, "R, times the rows", "Error between the rows",
              "Mean error of the points between the rows of simulated scans, against exact truth."),
             ("continuous-held-out", held, "K, every K-th ring coded", "Error at rings held out",
-             "Mean error of the ranges predicted in the directions of returns that were held out, over "
-             "those of which every method predicts one.")):
+             "Mean error of the ranges predicted in the directions of returns that were held out, "
+             "over those of which every method predicts one.")):
         if rows:
             context.write_data(name, ["input", "factor", "method", "mean", "p50", "p95",
                                       "completeness"], rows)
             draw(context, name, axis)
-            found.append(Figure(name, title, caption + " One panel a scan; above the error, below the "
-                                "share of the directions that got a point.", "svg",
+            found.append(Figure(name, title, caption + " One panel a scan; above the error, below "
+                                "the share of the directions that got a point.", "svg",
                                 f"data/{name}.csv"))
     return found
 

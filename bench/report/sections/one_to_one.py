@@ -28,8 +28,9 @@ DRAWN = ("baseline, degree 64", "PCL low online", "PCL mid offline", "paper, def
          "paper, tuned for 1:1", "curlidar, 5 mm", "curlidar, 2 cm", "curlidar, 5 cm")
 DIRECTIONS = ("to_grid", "from_grid", "to_raw", "from_raw")
 NO_CP = Missing("not defined for it")
-COUNTS = ("the paper's gridded cloud (as many rows as rings, 1024 columns, its outlier filter and its "
-          "range limits), which every codec is given; raw: the raw returns within these limits.")
+COUNTS = ("the paper's gridded cloud (as many rows as rings, 1024 columns, its outlier filter and "
+          "its range limits), which every codec is given; raw: the raw returns within these "
+          "limits.")
 # Measured inputs that the means over each dataset of the paper are of.
 GROUPS = {
     "KITTI": lambda item: not isinstance(item, Scene) and item.is_kitti,
@@ -110,9 +111,9 @@ def table_of(context, item):
         notes = [f"Preset {scan['preset']}: {scan['grid_points']:,} cells of {scan['returns']:,} "
                  f"returns, of which {scan['returns_in_range']:,} lie within "
                  f"{scan['min_range_m']:.1f} .. {scan['max_range_m']:.1f} m."]
-    notes.append("Bytes are those of the whole file. CP counts, for CURL, 8 bytes a coefficient and 4 "
-                 "bits a cell against 24 bytes a point (doubles); for PCL, its stream against 12 "
-                 "(float32).")
+    notes.append("Bytes are those of the whole file. CP counts, for CURL, 8 bytes a coefficient "
+                 "and 4 bits a cell against 24 bytes a point (doubles); for PCL, its stream "
+                 "against 12 (float32).")
     return Table(table_id("one-to-one", item), f"1:1 reconstruction of {item.name}", COUNTS,
                  [Column("method", "codec"), *FIGURES], rows, notes,
                  again(item, f"one-to-one {file_of(item)}"))

@@ -9,8 +9,8 @@ TIMED = True  # measured alone
 TABLES = ("timing-stages",)
 RUNS, QUICK_RUNS = 9, 3
 PEER = ("pcl", "low online")  # what the paper compares with
-COUNTS = ("the {points:,} points of the gridded cloud; CPU milliseconds of one thread, median of {runs} "
-          "runs in one process, nothing read from files or written to them.")
+COUNTS = ("the {points:,} points of the gridded cloud; CPU milliseconds of one thread, median of "
+          "{runs} runs in one process, nothing read from files or written to them.")
 
 
 def chosen(context):
@@ -33,7 +33,9 @@ def lines_of(context, item):
 
 
 def seconds_as_ms(cell):
-    return Published(round(1e3 * cell.value, 3), cell.source) if isinstance(cell, Published) else cell
+    if not isinstance(cell, Published):
+        return cell
+    return Published(round(1e3 * cell.value, 3), cell.source)
 
 
 def name_of(line):
@@ -79,9 +81,9 @@ def codec_table(context, item, lines):
          Column("published_reconstruction_s", "reconstruction, published", "ms"),
          Column("published_total_s", "total, published", "ms")],
         [codec_row(context, line, peer, copy_ms) for line in codecs],
-        ["CURL is given the raw scan, the others its gridded cloud; detecting the sensor, the outlier "
-         "filter and the projection are left out of 'after gridding'. curlidar searches the step "
-         "that reaches its error: several trial encodings.",
+        ["CURL is given the raw scan, the others its gridded cloud; detecting the sensor, the "
+         "outlier filter and the projection are left out of 'after gridding'. curlidar searches "
+         "the step that reaches its error: several trial encodings.",
          f"PCL: its low online profile, in the same run. A copy: memcpy of the gridded cloud as "
          f"float32, {1e3 * copy_ms:.1f} us."],
         shown(item, lines))
@@ -114,8 +116,9 @@ def stage_table(context, item, lines):
         "timing-stages", f"Time of the paper's stages, S = 2x2, {item.name}",
         COUNTS.format(runs=lines[0]["runs"], points=lines[0]["grid_points"]),
         columns, [stage_row(context, lines, line) for line in stages],
-        ["Upsampling: mesh and rays; extraction: both passes of the fit; decoding: reading the file's "
-         "bytes. The outlier filter and the projection are not counted, as in the paper's table."],
+        ["Upsampling: mesh and rays; extraction: both passes of the fit; decoding: reading the "
+         "file's bytes. The outlier filter and the projection are not counted, as in the paper's "
+         "table."],
         shown(item, lines))
 
 
