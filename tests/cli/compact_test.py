@@ -69,8 +69,7 @@ class CompactTest(CommandTest):
 
     def test_every_return_and_what_was_found(self):
         self.simulate("rays.pcd", "--range-unit", 0.002)
-        report = self.run_json("encode", "rays.pcd", "--max-error", 0.02, "--effort", 1, "-o",
-                               "all.curl")
+        report = self.run_json("encode", "rays.pcd", "--max-error", 0.02, "-o", "all.curl")
         self.assertEqual(report["points_coded"], report["points_in"])
         self.assertEqual(sum(report["dropped"].values()), 0)
         self.assertLessEqual(report["max_error_m"], 0.02)
@@ -95,8 +94,7 @@ class CompactTest(CommandTest):
         parts = records["bytes"]
         self.assertLessEqual(chunks["order"], parts["order"])  # which counts its frame, too
         self.assertLessEqual(chunks["records"], parts["attributes"])
-        text = self.run_ok("encode", "rays.pcd", "--max-error", 0.02, "--effort", 1, "-o",
-                           "all.curl").decode()
+        text = self.run_ok("encode", "rays.pcd", "--max-error", 0.02, "-o", "all.curl").decode()
         for word in ["every point within 20.0 mm", "100.00 %", "1,808 positions", "calibrat",
                      "order", "attributes", "corrected"]:
             self.assertIn(word, text)
