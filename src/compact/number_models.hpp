@@ -47,14 +47,4 @@ class NumberModels {
   std::size_t last_zero_ = 0;
 };
 
-/// A number of `bits` bits, the highest first.
-template <class Coder>
-std::uint32_t code_plain(Coder& coder, std::uint32_t value, int bits) {
-  std::uint32_t found = 0;
-  for (int i = bits; i-- > 0;) {
-    found = found << 1 | (coder.code(32768, (value >> i & 1) != 0) ? 1u : 0u);
-  }
-  return found;
-}
-
 }  // namespace curlidar::compact

@@ -16,6 +16,7 @@
 #include "compact/ray_tables.hpp"
 #include "compact/row_sequence.hpp"
 #include "compact/scan_header.hpp"
+#include "entropy/plain_bits.hpp"
 
 namespace curlidar::compact {
 namespace {
@@ -169,7 +170,7 @@ void write_part(RangeEncoder& encoder, const std::vector<std::int32_t>& values,
 
 bool read_part(RangeDecoder& decoder, std::uint32_t rows, std::int32_t limit,
                std::vector<std::int32_t>& values, std::uint32_t& shift) {
-  const std::size_t period = code_plain(decoder, 0, kPeriodBits) + 1;
+  const std::size_t period = code_plain(decoder, std::size_t{0}, kPeriodBits) + 1;
   std::vector<std::int32_t> coded;
   if (!read_sequence(decoder, rows, limit, coded, shift, SequenceKind::steady)) return false;
   values.resize(rows);

@@ -6,6 +6,7 @@
 #include "compact/number_models.hpp"
 #include "compact/scan_types.hpp"
 #include "entropy/model.hpp"
+#include "entropy/plain_bits.hpp"
 
 namespace curlidar::compact {
 namespace {
@@ -80,8 +81,8 @@ void write_sequence(RangeEncoder& encoder, const std::vector<std::int32_t>& valu
 
 bool read_sequence(RangeDecoder& decoder, std::uint32_t count, std::int32_t limit,
                    std::vector<std::int32_t>& values, std::uint32_t& shift, SequenceKind kind) {
-  shift = code_plain(decoder, 0, 5);
-  const std::uint32_t smoothing = code_plain(decoder, 0, 2);
+  shift = code_plain(decoder, 0u, 5);
+  const std::uint32_t smoothing = code_plain(decoder, 0u, 2);
   if (shift > kMaxTableShift) return false;
   values.clear();
   values.reserve(count);

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/try.hpp"
+#include "entropy/plain_bits.hpp"
 #include "records/level_coder.hpp"
 #include "records/level_window.hpp"
 #include "records/numbers.hpp"
@@ -81,7 +82,7 @@ bool code_levels(Coder& coder, const Levels& levels, int bits, const RecordGeome
     if (drop > 0) {
       rest = code_bit(coder, first_dropped[level], kLimit, (number >> (drop - 1) & 1) != 0) ? 1 : 0;
       const std::uint64_t low = (std::uint64_t{1} << (drop - 1)) - 1;
-      rest = rest << (drop - 1) | code_plain(coder, number & low, drop - 1);
+      rest = rest << (drop - 1) | code_plain(coder, number & low, static_cast<unsigned>(drop - 1));
     }
     number = levels.least(level) + rest;
   }

@@ -10,18 +10,9 @@
 #include <vector>
 
 #include "entropy/model.hpp"
+#include "entropy/plain_bits.hpp"
 
 namespace curlidar::records {
-
-/// Equally likely bits, the highest first.
-template <class Coder>
-std::uint64_t code_plain(Coder& coder, std::uint64_t value, unsigned bits) {
-  std::uint64_t found = 0;
-  for (unsigned i = bits; i-- > 0;) {
-    found = found << 1 | (coder.code(32768, (value >> i & 1) != 0) ? 1u : 0u);
-  }
-  return found;
-}
 
 /// 0, 1, 2, 3, then two classes an octave; at most 127.
 inline std::uint32_t half_octave(std::uint64_t magnitude) {

@@ -11,16 +11,6 @@
 
 namespace curlidar {
 
-/// Codes a number of `bits` bits, all equally likely, highest first.
-template <class Coder>
-std::uint64_t code_plain(Coder& coder, std::uint64_t value, int bits) {
-  std::uint64_t found = 0;
-  for (int place = bits; place-- > 0;) {
-    found = found << 1 | (coder.code(32768, (value >> place & 1) != 0) ? 1u : 0u);
-  }
-  return found;
-}
-
 /// Numbers of up to 64 bits by their size: how many bits, in unary, then those below the highest;
 /// the first two of them are learnt, the others are plain.
 class SizeModels {

@@ -4,6 +4,7 @@
 #include <array>
 #include <numeric>
 
+#include "entropy/plain_bits.hpp"
 #include "records/numbers.hpp"
 
 namespace curlidar {
@@ -13,7 +14,8 @@ namespace {
 /// one or of two rows before.
 class StepModels {
  public:
-  explicit StepModels(std::uint32_t rows) : bits_(std::bit_width(rows - 1)) {}
+  explicit StepModels(std::uint32_t rows)
+      : bits_(static_cast<unsigned>(std::bit_width(rows - 1))) {}
 
   template <class Coder>
   std::uint32_t code(Coder& coder, std::uint32_t step) {
@@ -21,7 +23,7 @@ class StepModels {
     if (!code_bit(coder, repeated_[0], kLimit, step == last_[1])) {
       found = last_[0];
       if (!code_bit(coder, repeated_[1], kLimit, step == last_[0])) {
-        found = static_cast<std::uint32_t>(code_plain(coder, step, bits_));
+        found = code_plain(coder, step, bits_);
       }
     }
     last_ = {last_[1], found};
@@ -31,7 +33,7 @@ class StepModels {
  private:
   static constexpr std::uint32_t kLimit = 30;
 
-  int bits_;
+  unsigned bits_;
   std::array<BitModel, 2> repeated_;
   std::array<std::uint32_t, 2> last_{1, 1};
 };
