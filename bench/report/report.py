@@ -45,7 +45,9 @@ def arguments():
                         help="where the report goes (default: report)")
     parser.add_argument("--quick", action="store_true",
                         help="three simulated scenes and at most one real scan, fewer settings")
-    parser.add_argument("--simulated", action="store_true", help="no real scans")
+    only = parser.add_mutually_exclusive_group()
+    only.add_argument("--simulated", action="store_true", help="no real scans")
+    only.add_argument("--real", action="store_true", help="no simulated scenes")
     parser.add_argument("--all", action="store_true", help="every scan of CURLIDAR_DATA")
     parser.add_argument("--sections", metavar="LIST", default=",".join(SECTIONS),
                         help=f"only these, of {','.join(SECTIONS)}")
@@ -91,7 +93,7 @@ def real_scans(options):
 
 def context_of(options):
     curlidar, folder = programs()
-    scenes = scans.QUICK_SCENES if options.quick else scans.SCENES
+    scenes = () if options.real else scans.QUICK_SCENES if options.quick else scans.SCENES
     published = tomllib.loads((HERE / "published.toml").read_text(encoding="utf-8"))
     options.out.mkdir(parents=True, exist_ok=True)
     return Context(options.out.resolve(), curlidar, folder, real_scans(options), list(scenes),
@@ -101,7 +103,7 @@ def context_of(options):
 def command_of(options, section=None):
     """What makes this report, or a section of it, again; of files only their names."""
     words = [Path(name).name for name in options.scans]
-    words += [f"--{name}" for name in ("quick", "simulated", "all") if getattr(options, name)]
+    words += [f"--{name}" for name in ("quick", "simulated", "real", "all") if getattr(options, name)]
     if section or options.sections != list(SECTIONS):
         words += ["--sections", section or ",".join(options.sections)]
     return f"{options.name} {shlex.join(words)}".strip()
