@@ -327,6 +327,13 @@ class WordsTest(unittest.TestCase):
             self.assertIn(f"{name}/file", self.fails("-o", f"{name}/file/r", "--simulated"))
 
     @unittest.skipUnless(COMMAND, "CURLIDAR names no command")
+    def test_real_scans_alone_must_be_there(self):
+        with tempfile.TemporaryDirectory() as name:
+            said = self.fails("-o", f"{name}/r", "--real", "--sections", "maps", CURLIDAR_DATA=name)
+            self.assertIn(f"no MANIFEST.tsv in {name}", said)
+            self.assertIn("not allowed with", self.fails("--real", "--simulated"))
+
+    @unittest.skipUnless(COMMAND, "CURLIDAR names no command")
     def test_the_command_finds_and_starts_the_report(self):
         with tempfile.TemporaryDirectory() as name:
             done = subprocess.run(

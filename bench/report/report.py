@@ -85,6 +85,9 @@ def real_scans(options):
         return []
     data = Path(os.environ.get("CURLIDAR_DATA", HERE.parents[1] / "../shared/data")).resolve()
     found = scans.chosen(options.scans, data, options.all, options.quick)
+    if not found and options.real:
+        raise Stop(f"no real scans: there is no MANIFEST.tsv in {data}; CURLIDAR_DATA names the "
+                   "folder of the scans, or name scans")
     if not found:
         print(f"No MANIFEST.tsv in {data}: simulated scenes only (CURLIDAR_DATA names the folder "
               "of the scans).", file=sys.stderr)
@@ -94,16 +97,18 @@ def real_scans(options):
 def context_of(options):
     curlidar, folder = programs()
     scenes = () if options.real else scans.QUICK_SCENES if options.quick else scans.SCENES
+    found = real_scans(options)
     published = tomllib.loads((HERE / "published.toml").read_text(encoding="utf-8"))
     options.out.mkdir(parents=True, exist_ok=True)
-    return Context(options.out.resolve(), curlidar, folder, real_scans(options), list(scenes),
+    return Context(options.out.resolve(), curlidar, folder, found, list(scenes),
                    published, options.quick, options.all)
 
 
 def command_of(options, section=None):
     """What makes this report, or a section of it, again; of files only their names."""
     words = [Path(name).name for name in options.scans]
-    words += [f"--{name}" for name in ("quick", "simulated", "real", "all") if getattr(options, name)]
+    words += [f"--{name}" for name in ("quick", "simulated", "real", "all")
+              if getattr(options, name)]
     if section or options.sections != list(SECTIONS):
         words += ["--sections", section or ",".join(options.sections)]
     return f"{options.name} {shlex.join(words)}".strip()
