@@ -2,14 +2,47 @@
 // "Range in direction d": the continuous representation, whatever is beneath it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "curlidar/lattice.hpp"
 #include "curlidar/vec3.hpp"
 
 namespace curlidar {
+
+/// A line of sight in the frame of the coded cloud.
+struct Sightline {
+  Vec3 origin{};     ///< near the sensor: metres away from it are too far
+  Vec3 direction{};  ///< of any length above 0
+};
+
+/// What there is along a line of sight.
+enum class Seen : std::uint8_t {
+  unknown,  ///< outside of what was scanned, or too far from any sample to say
+  nothing,  ///< no return: sky, or a gap that was seen to be one
+  surface,  ///< a surface that is to be believed
+};
+
+/// What a field says along one line of sight.
+struct RangeEstimate {
+  /// From the line's origin, metres. Also where no surface is believed, if there is anything to
+  /// guess from; else NaN.
+  double range_m = std::numeric_limits<double>::quiet_NaN();
+  /// Probability that a surface is there and |error of range_m| <= 5 cm; 0 .. 1.
+  float confidence = 0;
+  Seen seen = Seen::unknown;
+
+  bool valid() const { return seen == Seen::surface; }
+};
+
+/// The coded returns that an estimate stands on; weights are >= 0 and add up to 1, or are all 0.
+struct Sources {
+  std::array<std::size_t, 4> cell{};  ///< row * columns + column
+  std::array<double, 4> weight{};
+};
 
 /// A continuous range function on the viewing sphere with the lattice its returns were coded on.
 /// Immutable; all members may be called from many threads.
@@ -33,6 +66,19 @@ class Field {
 
   /// Whether the cell holds a coded return.
   virtual bool occupied(std::uint32_t row, std::uint32_t column) const = 0;
+
+  /// Ranges along any lines of sight, in any order; estimates[i] is of lines[i], both have the same
+  /// size. Where lines start elsewhere than the coded beams the surface is looked for along them.
+  /// Threads never change the result; 0 = all cores. O(lines).
+  virtual void range_along(std::span<const Sightline> lines, std::span<RangeEstimate> estimates,
+                           std::size_t threads = 1) const;
+  /// The same from the origin of the cloud's frame; directions of any length above 0.
+  void range_at(std::span<const Vec3> directions, std::span<RangeEstimate> estimates,
+                std::size_t threads = 1) const;
+
+  /// The coded returns on the surface that is seen at a point of the cloud's frame: what attributes
+  /// there are interpolated from.
+  virtual Sources sources_at(const Vec3& point) const;
 
   /// The cell, row * columns + column, whose return is nearest to a direction; a cell without one
   /// if the direction is nobody's.
