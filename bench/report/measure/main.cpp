@@ -39,6 +39,7 @@ const std::vector<Verb> kVerbs{
      {"runs", "preset", "sensor"},
      "SCAN [--runs N] [--preset P] [--sensor S]",
      timing},
+    {"upsampling", 1, {"preset", "sensor"}, "SCAN [--sensor S]", upsampling},
 };
 
 int usage() {

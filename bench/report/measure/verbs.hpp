@@ -15,5 +15,7 @@ Status truth(const Arguments& arguments);
 Status held_out(const Arguments& arguments);
 // timing.cpp: CPU time of the codecs, and of the stages of the paper's.
 Status timing(const Arguments& arguments);
+// upsampling.cpp: 16 rows to 64 by TULIP's protocol.
+Status upsampling(const Arguments& arguments);
 
 }  // namespace curlidar::bench

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// 16 rings to 64 by TULIP's protocol: every method predicts the rows of the image between those
+// given.
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/try.hpp"
+#include "codec/beam_tables.hpp"
+#include "report/measure/inputs.hpp"
+#include "report/measure/json.hpp"
+#include "report/measure/tulip.hpp"
+#include "report/measure/verbs.hpp"
+#include "sensor/own_frame.hpp"
+
+namespace curlidar::bench {
+namespace {
+
+using tulip::Image;
+using tulip::kColumns;
+using tulip::kEvery;
+using tulip::kRows;
+
+struct OwnScan {
+  Cloud cloud;
+  bool motion_undone = false;
+};
+
+/// The scan as the sensor saw it; as it is where its motion cannot be told.
+Result<OwnScan> own_scan(const Scan& scan) {
+  CURLIDAR_TRY_ASSIGN(rings, scan.settings.sensor ? assign_rings(scan.cloud, *scan.settings.sensor)
+                                                  : detect_sensor(scan.cloud));
+  CURLIDAR_TRY_ASSIGN(fit, find_sensor_lattice(scan.cloud, rings, scan.settings));
+  if (!fit || fit->motion.none()) return OwnScan{scan.cloud, false};
+  return OwnScan{in_own_frame(scan.cloud, *fit), true};
+}
+
+/// Ranges of the rows between the given ones, by the ranges below and above (0: none) and how far
+/// up the row lies between them.
+using Between = std::function<double(double below, double above, double up)>;
+
+Image interpolate(const Image& given, const Between& between) {
+  Image image;
+  for (std::size_t row = 0; row < kRows; ++row) {
+    const std::size_t lower = row / kEvery * kEvery, upper = lower + kEvery;
+    const double up = static_cast<double>(row - lower) / kEvery;
+    for (std::size_t column = 0; column < kColumns; ++column) {
+      const double below = given.at(lower, column);
+      image.at(row, column) = upper < kRows ? between(below, given.at(upper, column), up) : below;
+    }
+  }
+  return image;
+}
+
+double nearest_ring(double below, double above, double up) {
+  return up < .5 ? below : above;
+}
+
+double edge_aware(double below, double above, double up) {
+  constexpr double kEdge = .35;  ///< ranges that differ by more belong to two surfaces
+  if (!(below > 0 && above > 0) || std::abs(below - above) > kEdge * std::min(below, above)) {
+    return nearest_ring(below, above, up);
+  }
+  return 1 / ((1 - up) / below + up / above);
+}
+
+Json to_json(const tulip::Scores& s) {
+  return {{"mae_m", s.mae_m},
+          {"both_valid_mae_m", s.both_valid_mae_m},
+          {"chamfer_m2", s.chamfer_m2},
+          {"iou", s.iou},
+          {"f1", s.f1},
+          {"precision", s.precision},
+          {"recall", s.recall},
+          {"mask_iou", s.mask_iou},
+          {"p50", s.median_m},
+          {"p95", s.p95_m},
+          {"completeness", s.completeness}};
+}
+
+Status print_scores(const std::string& method, const Image& predicted, const Image& truth) {
+  CURLIDAR_TRY_ASSIGN(scores, tulip::score(predicted, truth));
+  Json line{{"method", method}};
+  line.update(to_json(scores));
+  print_line(line);
+  return {};
+}
+
+}  // namespace
+
+Status upsampling(const Arguments& arguments) {
+  CURLIDAR_TRY_ASSIGN(scan, read_scan(arguments));
+  CURLIDAR_TRY_ASSIGN(own, own_scan(scan));
+  const Image truth = tulip::project(own.cloud);
+  const Image given = tulip::given_rows(truth);
+  print_line({{"scan", scan.path}, {"motion_undone", own.motion_undone}});
+  CURLIDAR_TRY(print_scores("nearest ring", interpolate(given, nearest_ring), truth));
+  CURLIDAR_TRY(print_scores("edge-aware", interpolate(given, edge_aware), truth));
+  return {};
+}
+
+}  // namespace curlidar::bench
