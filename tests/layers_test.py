@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 # Folders of src/ from the bottom up; a folder may include itself and those before it.
 LAYERS = ["base", "cloud", "io", "sensor", "image", "field", "paper", "fixed", "entropy",
-          "compact", "format", "records", "codec", "reconstruct"]
+          "compact", "format", "records", "codec", "dense", "reconstruct"]
 # Rooms beside the codec; they see these layers only, and no layer sees them.
 BESIDE = {"metrics", "simulate", "render"}
 SEEN_BESIDE = {"base", "cloud", "io", "sensor", "image"}

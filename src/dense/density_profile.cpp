@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dense/density_profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/try.hpp"
+#include "dense/embedded_density.hpp"
+#include "sensor/angles.hpp"
+
+namespace curlidar {
+namespace {
+
+constexpr std::int16_t kMostPermille = 1000;
+
+struct NamedTable {
+  const char* name;
+  const RangeTable* table;
+  int low, high;
+};
+
+Status validate_table(const NamedTable& named, std::size_t rows) {
+  if (!named.table->empty() && named.table->rows() != rows) {
+    return Error{ErrorCode::invalid_argument, fmt::format("{} has {} rows, the profile {}",
+                                                          named.name, named.table->rows(), rows)};
+  }
+  for (std::size_t row = 0; row < named.table->rows(); ++row) {
+    for (const std::int16_t number : named.table->row(row)) {
+      if (number >= named.low && number <= named.high) continue;
+      return Error{ErrorCode::invalid_argument,
+                   fmt::format("{}, row {}: {} is not in {} .. {}", named.name, row, number,
+                               named.low, named.high)};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+std::size_t RangeTable::bin(double range_m) {
+  const double bin = kBinScale_m / range_m;
+  return bin < kBins ? static_cast<std::size_t>(std::max(bin, 0.0)) : kBins - 1;
+}
+
+double DensityProfile::elevation(std::size_t row, double range_m) const {
+  return radians_of(elevation_mdeg.at(row, range_m) / 1000);
+}
+
+double DensityProfile::return_share(std::size_t row, double range_m) const {
+  return return_permille.empty() ? 1 : return_permille.at(row, range_m) / kMostPermille;
+}
+
+double DensityProfile::given_return_share(std::size_t row, double range_m) const {
+  return given_return_permille.empty() ? 1 : given_return_permille.at(row, range_m) / kMostPermille;
+}
+
+double DensityProfile::bias_m(std::size_t row, double range_m) const {
+  return bias_mm.empty() ? 0 : bias_mm.at(row, range_m) / 1000;
+}
+
+Status validate(const DensityProfile& profile) {
+  const auto invalid = [&](std::string what) {
+    return Error{ErrorCode::invalid_argument,
+                 fmt::format("density profile \"{}\": {}", profile.name, what)};
+  };
+  if (profile.rows > kMaxDensityRows) {
+    return invalid(fmt::format("{} rows are more than {}", profile.rows, kMaxDensityRows));
+  }
+  if (profile.given_every < 1 || profile.given_every > kMaxDensityRows ||
+      profile.given_first >= std::max<std::size_t>(profile.rows, 1)) {
+    return invalid("the rows given must be rows of the profile");
+  }
+  for (const NamedTable& named :
+       {NamedTable{"elevation_mdeg", &profile.elevation_mdeg, -30000, 30000},
+        {"return_permille", &profile.return_permille, 0, kMostPermille},
+        {"given_return_permille", &profile.given_return_permille, 0, kMostPermille},
+        {"bias_mm", &profile.bias_mm, -30000, 30000}}) {
+    if (Status status = validate_table(named, profile.rows); !status) {
+      return invalid(status.error().message);
+    }
+  }
+  for (const ObliviousTrees* trees : {&profile.returns, &profile.residual, &profile.confidence}) {
+    if (trees->empty()) continue;
+    if (Status status = validate(*trees); !status) return invalid(status.error().message);
+  }
+  return {};
+}
+
+std::vector<std::string> builtin_density_names() {
+  std::vector<std::string> names;
+  for (const EmbeddedText& text : embedded_density()) names.emplace_back(text.name);
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Result<DensityProfile> builtin_density_profile(std::string_view name) {
+  const std::string_view text = text_named(embedded_density(), name);
+  if (text.empty()) {
+    std::string known;
+    for (const std::string& other : builtin_density_names()) known += " " + other;
+    return Error{ErrorCode::not_found,
+                 fmt::format("no built-in density profile is named \"{}\"; there are{}",
+                             name.substr(0, 64), known.empty() ? " none" : known)};
+  }
+  return parse_density_profile(text, fmt::format("built-in density profile {}", name));
+}
+
+}  // namespace curlidar

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dense/density_profile.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace curlidar {
+namespace {
+
+using testing::HasSubstr;
+
+ObliviousTrees some_trees() {
+  ObliviousTrees trees;
+  trees.cuts = {{-1.5f, .1f, 3e-7f + 1}, {}, {0}};
+  trees.depth = 3;
+  trees.splits = {{0, 1}, {2, 0}, {0, 2}, {1, 0}, {0, 0}, {2, 0}};
+  for (int i = 0; i < 16; ++i) trees.leaves.push_back(static_cast<std::int16_t>(i * 2000 - 16000));
+  trees.base = -1.0 / 3;
+  trees.unit = 6.4e-5;
+  return trees;
+}
+
+DensityProfile some_profile() {
+  DensityProfile profile;
+  profile.name = "a \"quoted\" name";
+  profile.description = "two\nlines";
+  profile.rows = 3;
+  profile.given_first = 0;
+  profile.given_every = 2;
+  profile.elevation_mdeg = profile.return_permille = RangeTable(3);
+  profile.given_return_permille = profile.bias_mm = RangeTable(3);
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t bin = 0; bin < RangeTable::kBins; ++bin) {
+      const auto number = static_cast<std::int16_t>(row * 100 + bin);
+      profile.elevation_mdeg.row(row)[bin] = static_cast<std::int16_t>(number - 1500);
+      profile.return_permille.row(row)[bin] = number;
+      profile.bias_mm.row(row)[bin] = static_cast<std::int16_t>(-number);
+    }
+  }
+  profile.returns = some_trees();
+  profile.confidence = some_trees();
+  return profile;
+}
+
+std::string why_not(const std::string& text) {
+  const Result<DensityProfile> profile = parse_density_profile(text, "here");
+  return profile ? "" : profile.error().message;
+}
+
+TEST(RangeTable, BinsAreEvenInInverseRange) {
+  EXPECT_EQ(RangeTable::bin(500), 0u);
+  EXPECT_EQ(RangeTable::bin(192), 1u);
+  EXPECT_EQ(RangeTable::bin(19.2), 10u);
+  EXPECT_EQ(RangeTable::bin(3.01), 63u);
+  EXPECT_EQ(RangeTable::bin(1e-9), 63u);
+}
+
+TEST(DensityProfile, ItsTextSaysItAll) {
+  const DensityProfile profile = some_profile();
+  ASSERT_TRUE(validate(profile));
+  const std::string text = density_profile_text(profile);
+  const Result<DensityProfile> read = parse_density_profile(text, "text");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(*read, profile);
+  EXPECT_EQ(density_profile_text(*read), text);
+}
+
+TEST(DensityProfile, WithoutTablesSaysNothing) {
+  const Result<DensityProfile> read = parse_density_profile("name = \"x\"", "text");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->rows, 0u);
+  EXPECT_EQ(read->return_share(7, 10), 1);
+  EXPECT_EQ(read->bias_m(7, 10), 0);
+}
+
+TEST(DensityProfile, TellsNumbersInTheirUnits) {
+  const DensityProfile profile = some_profile();
+  EXPECT_NEAR(profile.elevation(1, 19.2), (-1500 + 110) * 1.7453292519943e-5, 1e-12);
+  EXPECT_DOUBLE_EQ(profile.return_share(2, 500), .2);
+  EXPECT_DOUBLE_EQ(profile.bias_m(1, 192), -.101);
+  EXPECT_TRUE(profile.is_given(2));
+  EXPECT_FALSE(profile.is_given(1));
+}
+
+TEST(DensityProfile, MistakesAreNamedWithTheirLine) {
+  EXPECT_THAT(why_not("name = \"x\"\nrows = -1"), HasSubstr("here, line 2: rows"));
+  EXPECT_THAT(why_not("\n\ncolour = 1"), HasSubstr("line 3: unknown key \"colour\""));
+  EXPECT_THAT(why_not("rows = 2\n[tables]\nbias_mm = [[1]]"), HasSubstr("1 rows, the profile 2"));
+  EXPECT_THAT(why_not("rows = 1\n[tables]\nbias_mm = [[1,\n70000]]"), HasSubstr("line 4: bias_mm"));
+  EXPECT_THAT(why_not("rows = 1\n[tables]\nbias_mm = [[]]"), HasSubstr("row 0"));
+  EXPECT_THAT(why_not("rows = 1\n[tables]\nreturn_permille = [[1001]]"), HasSubstr("1001"));
+  EXPECT_THAT(why_not("[trees.returns]\ndepth = 2\nbase = 0.0"), HasSubstr("unit is missing"));
+  EXPECT_THAT(why_not("[trees.returns]\ndepth = 1\nbase = 0\nunit = 1\ncuts = [[0]]\n"
+                      "splits = [[1, 0]]\nleaves = [[1, 2]]"),
+              HasSubstr("feature 1 of 1"));
+  EXPECT_THAT(why_not("[trees.returns]\ndepth = 1\nbase = 0\nunit = 1\ncuts = [[0]]\n"
+                      "splits = [[0, 0]]\nleaves = [[1]]"),
+              HasSubstr("2 leaves, not 1"));
+  EXPECT_THAT(why_not("[trees.returns]\ndepth = 1\nbase = 0\nunit = 1\ncuts = [[1e300]]\n"),
+              HasSubstr("line 5: cuts"));
+  EXPECT_THAT(why_not("[trees.wisdom]\ndepth = 1"), HasSubstr("unknown key \"wisdom\""));
+  EXPECT_THAT(why_not("trees = 7"), HasSubstr("trees must be a table"));
+  EXPECT_THAT(why_not("[="), HasSubstr("not TOML"));
+}
+
+TEST(DensityProfile, BuiltInOnesCanBeRead) {
+  for (const std::string& name : builtin_density_names()) {
+    const Result<DensityProfile> profile = builtin_density_profile(name);
+    ASSERT_TRUE(profile) << profile.error().message;
+    EXPECT_EQ(profile->name, name);
+  }
+  const Result<DensityProfile> unknown = builtin_density_profile("nothing");
+  ASSERT_FALSE(unknown);
+  EXPECT_THAT(unknown.error().message, HasSubstr("generic"));
+}
+
+}  // namespace
+}  // namespace curlidar
