@@ -25,7 +25,7 @@ HEADERS = {
     "version": "base", "result": "base", "progress": "base", "vec3": "base", "cloud": "cloud",
     "io": "io", "sensor": "sensor", "calibrate": "sensor", "lattice": "image", "project": "image",
     "settings": "image",
-    "field": "field", "paper": "codec", "codec": "codec", "compare": "metrics", "metrics": "metrics",
+    "field": "field", "dense": "dense", "paper": "codec", "codec": "codec", "compare": "metrics", "metrics": "metrics",
     "simulate": "simulate", "render": "render", "calibrate": "sensor", "verify": "codec",
 }
 

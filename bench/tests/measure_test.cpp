@@ -73,16 +73,13 @@ TEST(Factors, AreNumbersBetweenCommas) {
     EXPECT_FALSE(parse_factors(bad)) << bad;
 }
 
-TEST(Aim, FindsTheBeamThatEndsInADirection) {
-  const RaisedField field;
+TEST(FieldSampler, FindsTheBeamThatEndsInADirection) {
+  DecodedScan scan;
+  scan.field = std::make_shared<RaisedField>();
   const Vec3 direction = direction_of(0.11, 1.234);
-  const Aim aim = aim_at(field, direction);
-  Vec3 point;
-  const double range = RaisedField::kRange_m;
-  field.place_row(aim.row, std::span(&aim.column, 1), std::span(&range, 1), std::span(&point, 1));
-  EXPECT_NEAR(elevation_of(point), 0.11, 1e-6);
-  EXPECT_NEAR(azimuth_of(point), 1.234, 1e-6);
-  EXPECT_GT(aim.row, field.lattice().row_of(0.11) + 1);  // beams from above look further down
+  const double range = FieldSampler(scan).range(direction);
+  EXPECT_NEAR(norm(direction * range - Vec3{0, 0, RaisedField::kHeight_m}), RaisedField::kRange_m,
+              1e-5);
 }
 
 TEST(SplitRings, KeepsEveryNthAndLeavesOutThoseBelowTheLast) {

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "curlidar/lattice.hpp"
 #include "curlidar/vec3.hpp"
@@ -42,6 +44,34 @@ struct RangeEstimate {
 struct Sources {
   std::array<std::size_t, 4> cell{};  ///< row * columns + column
   std::array<double, 4> weight{};
+};
+
+/// A motion of points: rotated, then moved.
+struct RigidMotion {
+  std::array<Vec3, 3> rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< rows of the matrix
+  Vec3 move{};
+
+  Vec3 turned(const Vec3& p) const {
+    return {dot(rotation[0], p), dot(rotation[1], p), dot(rotation[2], p)};
+  }
+  Vec3 turned_back(const Vec3& p) const {
+    return rotation[0] * p.x + rotation[1] * p.y + rotation[2] * p.z;
+  }
+  Vec3 operator()(const Vec3& p) const { return turned(p) + move; }
+  Vec3 undo(const Vec3& p) const { return turned_back(p - move); }
+};
+
+/// The lines of sight of a row in the sensor's own frame: they meet its spin axis, the z axis, at
+/// a height.
+struct RowLine {
+  double elevation = 0;      ///< radians
+  double height_m = 0;       ///< above the origin
+  bool from_origin = false;  ///< ranges of the row are distances from the origin, not from there
+
+  /// The range of a point of the own frame.
+  double range_of(double axis_distance_m, double z_m) const {
+    return std::hypot(axis_distance_m, from_origin ? z_m : z_m - height_m);
+  }
 };
 
 /// A continuous range function on the viewing sphere with the lattice its returns were coded on.
@@ -83,6 +113,18 @@ class Field {
   /// The cell, row * columns + column, whose return is nearest to a direction; a cell without one
   /// if the direction is nobody's.
   virtual std::size_t nearest_cell(double row, double column) const;
+
+  /// The coded returns where the sensor itself saw them: motion of the scan undone, what its rings
+  /// measure too far or too near taken away. One for each cell, row-major; NaN in empty ones.
+  virtual std::vector<Vec3> cell_points() const;
+  /// What the coded ranges of a row have added to those of cell_points, metres.
+  virtual double ring_offset_m(std::uint32_t row) const;
+  /// How a fractional row looks in that frame.
+  virtual RowLine row_line(double row) const;
+  /// Whether motion_at() is anything but no motion.
+  virtual bool moves() const { return false; }
+  /// From the sensor's own frame to the cloud's, for points at an azimuth of the own frame.
+  virtual RigidMotion motion_at(double azimuth) const;
 };
 
 }  // namespace curlidar

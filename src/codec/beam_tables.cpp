@@ -157,4 +157,24 @@ std::uint64_t range_unit_of(const LatticeFit& fit) {
   return static_cast<std::uint64_t>(std::llround(fit.beams.range_unit_m * kUnitsOfRange));
 }
 
+RigidMotion rigid_motion(const compact::Motion& motion, double azimuth) {
+  const auto scaled = [](const compact::Motion::Triple& units, double one) {
+    return Vec3{units[0] / one, units[1] / one, units[2] / one};
+  };
+  const auto turn = [&](const compact::Motion::Triple& units) { return scaled(units, 1 << 30); };
+  const auto move = [&](const compact::Motion::Triple& units) {
+    return scaled(units, compact::kRangeUnit);
+  };
+  const MotionTwist twist{turn(motion.turn),  move(motion.move),       turn(motion.turn2),
+                          move(motion.move2), turn(motion.rigid_turn), move(motion.rigid_move)};
+  const double s = azimuth / (2 * std::numbers::pi);
+  RigidMotion rigid;
+  rigid.move = apply_motion_at(twist, {}, s);
+  const Vec3 x = apply_motion_at(twist, {1, 0, 0}, s) - rigid.move;
+  const Vec3 y = apply_motion_at(twist, {0, 1, 0}, s) - rigid.move;
+  const Vec3 z = apply_motion_at(twist, {0, 0, 1}, s) - rigid.move;
+  rigid.rotation = {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
+  return rigid;
+}
+
 }  // namespace curlidar

@@ -6,6 +6,7 @@
 
 #include "compact/scan_types.hpp"
 #include "curlidar/codec.hpp"
+#include "curlidar/field.hpp"
 #include "sensor/lattice.hpp"
 
 namespace curlidar {
@@ -21,5 +22,8 @@ compact::RowTable ray_rows(const LatticeFit& fit, double error_m);
 
 /// What its ranges are multiples of, 2^-48 m; 0: not known.
 std::uint64_t range_unit_of(const LatticeFit& fit);
+
+/// What the motion of a scan does to points at an azimuth (radians) of the sensor's own frame.
+RigidMotion rigid_motion(const compact::Motion& motion, double azimuth);
 
 }  // namespace curlidar

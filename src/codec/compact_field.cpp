@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "codec/beam_tables.hpp"
 #include "compact/ray_points.hpp"
 #include "compact/scan_points.hpp"
 
@@ -283,6 +284,44 @@ std::size_t CompactField::nearest_cell(double row, double column) const {
   if (best != nullptr) return best->cell;
   const std::uint32_t nearest = replacement(corners);
   return nearest == kNoCell ? corners.front().cell : nearest;
+}
+
+std::vector<Vec3> CompactField::cell_points() const {
+  std::vector<Vec3> points(lattice_.cells(), {kNan, kNan, kNan});
+  for (std::uint32_t row = 0; row < lattice_.rows(); ++row) {
+    const double elevation = lattice_.elevations()[row];
+    const double height = height_m_.empty() ? 0 : height_m_[row];
+    const double lateral = rays_ ? metres(scan_.table.rays->rays[row].lateral) : 0;
+    for (std::uint32_t column = 0; column < lattice_.columns(); ++column) {
+      const std::size_t at = cell(row, column);
+      if (scan_.range[at] <= 0) continue;
+      const double range = metres(std::max(scan_.range[at] - offset(row), 1));
+      const double azimuth = rays_ ? radians_from_angle(static_cast<std::int32_t>(
+                                         scan_.table.rays->azimuth_of(row, column)))
+                                   : lattice_.azimuth(column);
+      const double up = rays_ ? elevation : elevation + height / range;
+      const double out = range * std::cos(up), c = std::cos(azimuth), s = std::sin(azimuth);
+      points[at] = {out * c - lateral * s, out * s + lateral * c,
+                    range * std::sin(up) + (rays_ ? height : 0)};
+    }
+  }
+  return points;
+}
+
+double CompactField::ring_offset_m(std::uint32_t row) const {
+  return scan_.table.range_offset.empty() ? 0 : metres(scan_.table.range_offset[row]);
+}
+
+RowLine CompactField::row_line(double row) const {
+  const double elevation = lattice_.elevation(row), height = height_at(between(row));
+  // A point at range r of a row with a height is seen at elevation + height / r: on a line that
+  // passes the origin at that distance.
+  return rays_ ? RowLine{elevation, height, false}
+               : RowLine{elevation, height / std::cos(elevation), true};
+}
+
+RigidMotion CompactField::motion_at(double azimuth) const {
+  return moves() ? rigid_motion(scan_.table.rays->motion, azimuth) : RigidMotion{};
 }
 
 void EmptyField::evaluate_row(double, std::span<const double>, bool,

@@ -37,6 +37,11 @@ class CompactField : public Field {
     return scan_.range[cell(row, column)] > 0;
   }
   std::size_t nearest_cell(double row, double column) const override;
+  std::vector<Vec3> cell_points() const override;
+  double ring_offset_m(std::uint32_t row) const override;
+  RowLine row_line(double row) const override;
+  bool moves() const override { return rays_ && !scan_.table.rays->motion.none(); }
+  RigidMotion motion_at(double azimuth) const override;
 
  private:
   /// A cell and its weight.

@@ -113,4 +113,33 @@ std::size_t Field::nearest_cell(double row, double column) const {
          static_cast<std::size_t>(std::round(within)) % width;
 }
 
+std::vector<Vec3> Field::cell_points() const {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const std::uint32_t width = lattice().columns();
+  std::vector<double> columns(width), ranges(width);
+  for (std::uint32_t column = 0; column < width; ++column) columns[column] = column;
+  std::vector<Vec3> points(lattice().cells());
+  for (std::uint32_t row = 0; row < lattice().rows(); ++row) {
+    evaluate_row(row, columns, false, ranges);
+    const std::span line = std::span(points).subspan(std::size_t{row} * width, width);
+    place_row(row, columns, ranges, line);
+    for (std::uint32_t column = 0; column < width; ++column) {
+      if (!occupied(row, column)) line[column] = {kNan, kNan, kNan};
+    }
+  }
+  return points;
+}
+
+double Field::ring_offset_m(std::uint32_t) const {
+  return 0;
+}
+
+RowLine Field::row_line(double row) const {
+  return {.elevation = lattice().elevation(row)};
+}
+
+RigidMotion Field::motion_at(double) const {
+  return {};
+}
+
 }  // namespace curlidar

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "curlidar/dense.hpp"
 #include "report/measure/codecs.hpp"
 
 namespace curlidar::bench {
@@ -36,6 +37,7 @@ Method coded_method(std::string name, std::string setting, const Cloud& cloud,
     method.skipped = "the points were coded one after the other, without a field";
     return method;
   }
+  if (settings.profile == Profile::compact) decoded->field = dense_field(decoded->field);
   method.bytes = encoded->bytes.size();
   method.bits_per_point = encoded->report.bits_per_point;
   method.cp_paper_percent = encoded->report.cp_paper_percent;

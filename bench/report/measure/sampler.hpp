@@ -52,13 +52,4 @@ class RingSampler final : public Sampler {
   Mixing mixing_;
 };
 
-/// Where a field must be asked so that its point lies in a given direction from the origin.
-struct Aim {
-  double row = 0, column = 0;
-};
-
-/// Fixed-point iteration: points of a field are not where its lattice looks if beams start away
-/// from the origin or the scan was moved.
-Aim aim_at(const Field& field, const Vec3& direction);
-
 }  // namespace curlidar::bench

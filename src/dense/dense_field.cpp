@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dense/dense_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "base/parallel.hpp"
+
+namespace curlidar {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+bool is_finite(const Vec3& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
+bool is_sight(const Sightline& line) {
+  return is_finite(line.origin) && is_finite(line.direction) && norm(line.direction) > 0;
+}
+
+/// The line as it crosses the half-plane of an azimuth.
+PlaneLine in_plane(const Sightline& line, double azimuth) {
+  const double c = std::cos(azimuth), s = std::sin(azimuth);
+  return {azimuth,
+          {line.origin.x * c + line.origin.y * s, line.origin.z},
+          {line.direction.x * c + line.direction.y * s, line.direction.z}};
+}
+
+/// Weights of the two samples of a ring.
+void add_sources(const RingLook& ring, double share, std::size_t at, Sources& sources) {
+  if (!ring.known || share <= 0) return;
+  sources.cell[at] = ring.left.point->cell;
+  sources.cell[at + 1] = ring.right.point->cell;
+  sources.weight[at] = share * (1 - ring.right_weight);
+  sources.weight[at + 1] = share * ring.right_weight;
+}
+
+}  // namespace
+
+DenseField::DenseField(std::shared_ptr<const Field> field, const DenseSettings&)
+    : field_(std::move(field)), points_(*field_) {}
+
+DenseField::Found DenseField::find_in_plane(const PlaneLine& line) const {
+  Found found;
+  found.look = look_along(points_, line);
+  found.guess = decide(points_, found.look);
+  return found;
+}
+
+DenseField::Found DenseField::find(const Sightline& line) const {
+  // The half-plane is that of the point, which is not known before it is found; where lines leave
+  // from the spin axis and nothing moves it is that of the direction.
+  constexpr int kPasses = 5;
+  constexpr double kClose = 1e-7;      // radians
+  constexpr double kSomewhere_m = 20;  // where nothing is found
+  const bool straight = !field_->moves() && line.origin.x == 0 && line.origin.y == 0;
+  double azimuth = azimuth_of(line.direction);
+  Found found;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    Sightline own = line;
+    if (field_->moves()) {
+      const RigidMotion motion = field_->motion_at(azimuth);
+      own = {motion.undo(line.origin), motion.turned_back(line.direction)};
+    }
+    found = find_in_plane(in_plane(own, azimuth));
+    if (straight) break;
+    const double r = found.guess.r > 0 ? found.guess.r : kSomewhere_m;
+    const double seen = azimuth_of(own.origin + own.direction * r);
+    const bool close = std::abs(turn_between(azimuth, seen)) < kClose;
+    azimuth = seen;
+    if (close) break;
+  }
+  return found;
+}
+
+RangeEstimate DenseField::estimate(const Sightline& line) const {
+  RangeEstimate estimate;
+  if (!is_sight(line) || points_.empty()) return estimate;
+  const Found found = find({line.origin, line.direction * (1 / norm(line.direction))});
+  if (found.guess.r > 0) estimate.range_m = found.guess.r;
+  estimate.seen = found.guess.seen;
+  estimate.confidence = plain_confidence(found.look, found.guess, 0);
+  return estimate;
+}
+
+void DenseField::range_along(std::span<const Sightline> lines, std::span<RangeEstimate> estimates,
+                             std::size_t threads) const {
+  constexpr std::size_t kChunk = 4096;
+  parallel_for((lines.size() + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
+    const std::size_t end = std::min(lines.size(), (chunk + 1) * kChunk);
+    for (std::size_t i = chunk * kChunk; i < end; ++i) estimates[i] = estimate(lines[i]);
+  });
+}
+
+double DenseField::on_row(double row, double column, bool masked) const {
+  const RowLine line = field_->row_line(row);
+  const double azimuth = std::remainder(lattice().azimuth(column), 2 * std::numbers::pi);
+  const PlaneLine plane{
+      azimuth, {0, line.height_m}, {std::cos(line.elevation), std::sin(line.elevation)}};
+  const Found found = find_in_plane(plane);
+  if (!(found.guess.r > 0) || (masked && found.guess.seen != Seen::surface)) return kNan;
+  return line.range_of(found.guess.r * plane.along.rho,
+                       line.height_m + found.guess.r * plane.along.z);
+}
+
+void DenseField::evaluate_row(double row, std::span<const double> columns, bool masked,
+                              std::span<double> ranges) const {
+  if (points_.empty()) return field_->evaluate_row(row, columns, masked, ranges);
+  const double inside = std::clamp(row, 0.0, static_cast<double>(lattice().rows() - 1));
+  const bool coded = inside == std::floor(inside);
+  const double offset = coded ? field_->ring_offset_m(static_cast<std::uint32_t>(inside)) : 0;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    // A cell keeps what the file says of it.
+    const double turns = std::floor(columns[i] / lattice().columns());
+    const double column = columns[i] - turns * lattice().columns();
+    const bool cell =
+        coded && column == std::floor(column) && column < lattice().columns() &&
+        occupied(static_cast<std::uint32_t>(inside), static_cast<std::uint32_t>(column));
+    if (cell) {
+      field_->evaluate_row(row, columns.subspan(i, 1), masked, ranges.subspan(i, 1));
+      continue;
+    }
+    ranges[i] = on_row(row, columns[i], masked) + offset;
+    if (std::isnan(ranges[i]) && !masked) {
+      field_->evaluate_row(row, columns.subspan(i, 1), masked, ranges.subspan(i, 1));
+    }
+  }
+}
+
+Sources DenseField::sources_at(const Vec3& point) const {
+  Sources sources;
+  if (!is_sight({{}, point}) || points_.empty()) return sources;
+  const Found found = find({{}, point * (1 / norm(point))});
+  add_sources(found.look.above, found.guess.above_share, 0, sources);
+  add_sources(found.look.below, 1 - found.guess.above_share, 2, sources);
+  return sources;
+}
+
+std::shared_ptr<const Field> dense_field(std::shared_ptr<const Field> field,
+                                         const DenseSettings& settings) {
+  if (settings.strategy == DenseStrategy::masks) return field;
+  return std::make_shared<DenseField>(std::move(field), settings);
+}
+
+}  // namespace curlidar

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A field that knows what lies between its cells.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "curlidar/dense.hpp"
+#include "dense/look.hpp"
+#include "dense/ring_points.hpp"
+#include "dense/rules.hpp"
+
+namespace curlidar {
+
+class DenseField final : public Field {
+ public:
+  /// `field` is not null.
+  DenseField(std::shared_ptr<const Field> field, const DenseSettings& settings);
+
+  const Lattice& lattice() const override { return field_->lattice(); }
+  void evaluate_row(double row, std::span<const double> columns, bool masked,
+                    std::span<double> ranges) const override;
+  void place_row(double row, std::span<const double> columns, std::span<const double> ranges,
+                 std::span<Vec3> points) const override {
+    field_->place_row(row, columns, ranges, points);
+  }
+  bool occupied(std::uint32_t row, std::uint32_t column) const override {
+    return field_->occupied(row, column);
+  }
+  void range_along(std::span<const Sightline> lines, std::span<RangeEstimate> estimates,
+                   std::size_t threads = 1) const override;
+  Sources sources_at(const Vec3& point) const override;
+  std::size_t nearest_cell(double row, double column) const override {
+    return field_->nearest_cell(row, column);
+  }
+  std::vector<Vec3> cell_points() const override { return field_->cell_points(); }
+  double ring_offset_m(std::uint32_t row) const override { return field_->ring_offset_m(row); }
+  RowLine row_line(double row) const override { return field_->row_line(row); }
+  bool moves() const override { return field_->moves(); }
+  RigidMotion motion_at(double azimuth) const override { return field_->motion_at(azimuth); }
+
+ private:
+  /// What was found along a line of sight.
+  struct Found {
+    Look look;
+    Guess guess;
+  };
+
+  /// Along a line of the cloud's frame.
+  Found find(const Sightline& line) const;
+  Found find_in_plane(const PlaneLine& line) const;
+  RangeEstimate estimate(const Sightline& line) const;
+  double on_row(double row, double column, bool masked) const;
+
+  std::shared_ptr<const Field> field_;
+  RingPoints points_;
+};
+
+}  // namespace curlidar
