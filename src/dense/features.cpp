@@ -77,12 +77,17 @@ void add_row(Filler<kSize>& to, const RingLook& ring, const Neighbours& row, dou
 
 int kind(DenseMode mode) {
   switch (mode) {
-    case DenseMode::none: return 0;
-    case DenseMode::smooth: return 1;
-    case DenseMode::planar: return 2;
+    case DenseMode::none:
+      return 0;
+    case DenseMode::smooth:
+      return 1;
+    case DenseMode::planar:
+      return 2;
     case DenseMode::jump_below:
-    case DenseMode::jump_above: return 3;
-    default: return 4;
+    case DenseMode::jump_above:
+      return 3;
+    default:
+      return 4;
   }
 }
 
@@ -132,8 +137,8 @@ PlainFeatures plain_features(const RingPoints& points, const Look& look, const G
   return features;
 }
 
-RowFeatures row_features(const PlainFeatures& plain, const DensityProfile& profile,
-                         std::size_t row, const Look& look, const Guess& guess) {
+RowFeatures row_features(const PlainFeatures& plain, const DensityProfile& profile, std::size_t row,
+                         const Look& look, const Guess& guess) {
   RowFeatures features{};
   Filler to(features);
   for (const float feature : plain) to.add(feature);

@@ -26,7 +26,7 @@ PlainFeatures plain_features(const RingPoints& points, const Look& look, const G
                              double step_m);
 
 /// `row` is one of the profile's; the profile has tables, and the rings are its given rows.
-RowFeatures row_features(const PlainFeatures& plain, const DensityProfile& profile,
-                         std::size_t row, const Look& look, const Guess& guess);
+RowFeatures row_features(const PlainFeatures& plain, const DensityProfile& profile, std::size_t row,
+                         const Look& look, const Guess& guess);
 
 }  // namespace curlidar

@@ -39,7 +39,11 @@ const std::vector<Verb> kVerbs{
      {"runs", "preset", "sensor"},
      "SCAN [--runs N] [--preset P] [--sensor S]",
      timing},
-    {"upsampling", 1, {"preset", "sensor"}, "SCAN [--sensor S]", upsampling},
+    {"upsampling",
+     1,
+     {"preset", "sensor", "profile"},
+     "SCAN [--sensor S] [--profile P]",
+     upsampling},
 };
 
 int usage() {

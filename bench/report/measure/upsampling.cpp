@@ -3,16 +3,20 @@
 // given.
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/try.hpp"
 #include "codec/beam_tables.hpp"
+#include "curlidar/io.hpp"
+#include "dense/row_rules.hpp"
 #include "report/measure/inputs.hpp"
 #include "report/measure/json.hpp"
 #include "report/measure/tulip.hpp"
 #include "report/measure/verbs.hpp"
+#include "sensor/angles.hpp"
 #include "sensor/own_frame.hpp"
 
 namespace curlidar::bench {
@@ -66,6 +70,63 @@ double edge_aware(double below, double above, double up) {
   return 1 / ((1 - up) / below + up / above);
 }
 
+/// The given rows as rings, from the top; elevations are the profile's, or the rows' own.
+RingPoints rings_of(const Image& given, const DensityProfile& profile) {
+  std::vector<Vec3> positions;
+  std::vector<std::uint16_t> ring_of_point;
+  std::vector<double> elevations;
+  for (std::size_t row = profile.given_first; row < kRows; row += kEvery) {
+    const std::size_t image_row = kRows - 1 - row;
+    for (std::size_t column = 0; column < kColumns; ++column) {
+      const double range = given.at(image_row, column);
+      if (!(range > 0)) continue;
+      positions.push_back(direction_of(profile.elevation(row, range),
+                                       tulip::azimuth_of_column(static_cast<double>(column))) *
+                          range);
+      ring_of_point.push_back(static_cast<std::uint16_t>(elevations.size()));
+    }
+    elevations.push_back(tulip::elevation_of_row(static_cast<double>(image_row)));
+  }
+  return {positions, ring_of_point, std::move(elevations), kColumns};
+}
+
+/// What is known without a profile.
+DensityProfile nominal_rows() {
+  DensityProfile profile;
+  profile.rows = kRows;
+  profile.given_first = kEvery - 1;
+  profile.given_every = kEvery;
+  profile.elevation_mdeg = RangeTable(kRows);
+  for (std::size_t row = 0; row < kRows; ++row) {
+    const double elevation = tulip::elevation_of_row(static_cast<double>(kRows - 1 - row));
+    profile.elevation_mdeg.row(row).fill(
+        static_cast<std::int16_t>(std::lround(1000 * degrees_of(elevation))));
+  }
+  return profile;
+}
+
+Image predict(const RingPoints& points, const DensityProfile& profile) {
+  const RowRules rules(points, profile);
+  Image image;
+  for (std::size_t row = 0; row < kRows; ++row) {
+    if (profile.is_given(row)) continue;
+    for (std::size_t column = 0; column < kColumns; ++column) {
+      const double azimuth = tulip::azimuth_of_column(static_cast<double>(column));
+      const RowGuess found =
+          rules.guess_along_row(row, std::remainder(azimuth, 2 * std::numbers::pi));
+      if (found.guess.seen == Seen::surface) image.at(kRows - 1 - row, column) = found.guess.r;
+    }
+  }
+  return image;
+}
+
+/// The file of a profile, or the name of a built-in one.
+Result<DensityProfile> read_profile(const std::string& name) {
+  if (name.find('.') == std::string::npos) return builtin_density_profile(name);
+  CURLIDAR_TRY_ASSIGN(bytes, read_file(name));
+  return parse_density_profile({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
+}
+
 Json to_json(const tulip::Scores& s) {
   return {{"mae_m", s.mae_m},
           {"both_valid_mae_m", s.both_valid_mae_m},
@@ -98,6 +159,23 @@ Status upsampling(const Arguments& arguments) {
   print_line({{"scan", scan.path}, {"motion_undone", own.motion_undone}});
   CURLIDAR_TRY(print_scores("nearest ring", interpolate(given, nearest_ring), truth));
   CURLIDAR_TRY(print_scores("edge-aware", interpolate(given, edge_aware), truth));
+  const DensityProfile nominal = nominal_rows();
+  CURLIDAR_TRY(print_scores("rules", predict(rings_of(given, nominal), nominal), truth));
+  if (const std::string name = arguments.option("profile", ""); !name.empty()) {
+    CURLIDAR_TRY_ASSIGN(profile, read_profile(name));
+    if (profile.rows != kRows || profile.given_first != nominal.given_first ||
+        profile.given_every != kEvery) {
+      return Error{ErrorCode::invalid_argument,
+                   name + ": not a profile of 64 rows of which every fourth is given"};
+    }
+    DensityProfile tables = profile;
+    tables.returns = tables.residual = {};
+    const RingPoints points = rings_of(given, profile);
+    CURLIDAR_TRY(print_scores("rules, tables", predict(points, tables), truth));
+    if (!profile.returns.empty()) {
+      CURLIDAR_TRY(print_scores("rules, tables, trees", predict(points, profile), truth));
+    }
+  }
   return {};
 }
 

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dense/row_rules.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dense/features.hpp"
+
+namespace curlidar {
+namespace {
+
+constexpr double kSomewhere_m = 20;  ///< where a row is looked for before anything is found
+
+PlaneLine line_at(double azimuth, double elevation) {
+  return {azimuth, {0, 0}, {std::cos(elevation), std::sin(elevation)}};
+}
+
+bool on_one_surface(const Guess& guess) {
+  return guess.mode == DenseMode::smooth || guess.mode == DenseMode::planar;
+}
+
+}  // namespace
+
+RowGuess RowRules::look_along_row(std::size_t row, double azimuth) const {
+  // Rows look up or down by a little less or more at near things; it settles at once.
+  constexpr int kPasses = 3;
+  constexpr double kClose = 1e-5;  // radians
+  RowGuess found;
+  double elevation = profile_.elevation(row, kSomewhere_m);
+  for (int pass = 0; pass < kPasses; ++pass) {
+    found.look = look_along(points_, line_at(azimuth, elevation));
+    found.guess = decide(points_, found.look);
+    if (!(found.guess.r > 0)) break;
+    const double seen_at = profile_.elevation(row, found.guess.r);
+    const bool close = std::abs(seen_at - elevation) < kClose;
+    elevation = seen_at;
+    if (close) break;
+  }
+  return found;
+}
+
+RowGuess RowRules::guess_along_row(std::size_t row, double azimuth) const {
+  RowGuess found = look_along_row(row, azimuth);
+  judge(row, found);
+  return found;
+}
+
+void RowRules::judge(std::size_t row, RowGuess& found) const {
+  Guess& guess = found.guess;
+  if (!(guess.r > 0)) {
+    found.returns = 0;
+    return;
+  }
+  if (!profile_.returns.empty() || !profile_.residual.empty()) {
+    const RowFeatures features = row_features(plain_features(points_, found.look, guess, 0),
+                                              profile_, row, found.look, guess);
+    found.returns = profile_.returns.empty() ? returns_by_tables(row, found)
+                                             : probability_of(profile_.returns(features));
+    if (on_one_surface(guess)) {
+      guess.r += profile_.bias_m(row, guess.r);
+      if (!profile_.residual.empty()) guess.r *= 1 + profile_.residual(features);
+    }
+  } else {
+    found.returns = returns_by_tables(row, found);
+    if (on_one_surface(guess)) guess.r += profile_.bias_m(row, guess.r);
+  }
+  guess.seen = found.returns >= 0.5 ? Seen::surface : Seen::nothing;
+}
+
+double RowRules::returns_by_tables(std::size_t row, const RowGuess& found) const {
+  // A row that hardly ever returns from there does not now; else it does where the samples on both
+  // sides are there, as far as a gap of theirs is not what their rows always have there. Both
+  // limits are mapped to one half.
+  constexpr double kLeastShare = 0.45, kLeastOccupied = 0.35, kEither = 0.15;
+  const double r = found.guess.r;
+  const double share = profile_.return_share(row, r);
+  if (share < kLeastShare) return 0.5 * share / kLeastShare;
+  double there = 0, weight = 0;
+  const auto ask = [&](const RingLook& ring, double near) {
+    if (ring.ring < 0) return;
+    const std::size_t its =
+        profile_.given_first + static_cast<std::size_t>(ring.ring) * profile_.given_every;
+    if (its >= profile_.rows) return;
+    const double says = (near + kEither) * profile_.given_return_share(its, r);
+    const Neighbours around = neighbours_of(points_, found.look.line, ring.ring);
+    there += says * (0.5 * around.count(1) / 3 + 0.5 * (around.at(0) > 0 ? 1 : 0));
+    weight += says;
+  };
+  ask(found.look.below, 1 - found.look.share);
+  ask(found.look.above, found.look.share);
+  const double occupied = weight > 0.05 ? there / weight : 0;
+  return occupied < kLeastOccupied ? 0.5 * occupied / kLeastOccupied
+                                   : 0.5 + 0.5 * (occupied - kLeastOccupied) / (1 - kLeastOccupied);
+}
+
+std::optional<std::size_t> RowRules::row_of(double elevation, double range_m) const {
+  const auto away = [&](std::size_t row) {
+    return std::abs(profile_.elevation(row, range_m) - elevation);
+  };
+  std::size_t nearest = 0;
+  for (std::size_t row = 1; row < profile_.rows; ++row) {
+    if (away(row) < away(nearest)) nearest = row;
+  }
+  const std::size_t other = nearest == 0 ? 1 : nearest - 1;
+  if (other >= profile_.rows) return nearest;
+  const double step =
+      std::abs(profile_.elevation(other, range_m) - profile_.elevation(nearest, range_m));
+  return away(nearest) <= step / 4 ? std::optional(nearest) : std::nullopt;
+}
+
+}  // namespace curlidar

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Along the rows of a known sensor: what its profile adds to the rules.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "dense/density_profile.hpp"
+#include "dense/look.hpp"
+#include "dense/ring_points.hpp"
+#include "dense/rules.hpp"
+
+namespace curlidar {
+
+/// What was found in the direction of a row.
+struct RowGuess {
+  Look look;
+  Guess guess;         ///< with the row's bias; `seen` by the profile
+  double returns = 0;  ///< probability of a return
+};
+
+/// The rings are the given rows of the profile, which has tables; both must outlive this.
+class RowRules {
+ public:
+  RowRules(const RingPoints& points, const DensityProfile& profile)
+      : points_(points), profile_(profile) {}
+
+  /// What the rules say along a row as seen from the origin, before the profile's say. The
+  /// elevation is that at which the row would see what is found.
+  RowGuess look_along_row(std::size_t row, double azimuth) const;
+  /// The same with it.
+  RowGuess guess_along_row(std::size_t row, double azimuth) const;
+  /// Adds it to what the rules said along a line that is the row's.
+  void judge(std::size_t row, RowGuess& found) const;
+
+  /// The row that sees a place at this range and elevation (from the origin); nothing if none does
+  /// within a quarter of the step to the next row.
+  std::optional<std::size_t> row_of(double elevation, double range_m) const;
+
+ private:
+  double returns_by_tables(std::size_t row, const RowGuess& found) const;
+
+  const RingPoints& points_;
+  const DensityProfile& profile_;
+};
+
+}  // namespace curlidar
