@@ -19,14 +19,14 @@ BESIDE = {"metrics", "simulate", "render"}
 SEEN_BESIDE = {"base", "cloud", "io", "sensor", "image"}
 
 # The layer that each public header belongs to. settings.hpp holds plain values that flow down to
-# every layer that needs them; paper.hpp shows stages of the codec, and codec.hpp also declares
-# what src/reconstruct does.
+# every layer that needs them; paper.hpp shows stages of the codec.
 HEADERS = {
     "version": "base", "result": "base", "progress": "base", "vec3": "base", "cloud": "cloud",
     "io": "io", "sensor": "sensor", "calibrate": "sensor", "lattice": "image", "project": "image",
     "settings": "image",
-    "field": "field", "dense": "dense", "paper": "codec", "codec": "codec", "compare": "metrics", "metrics": "metrics",
-    "simulate": "simulate", "render": "render", "calibrate": "sensor", "verify": "codec",
+    "field": "field", "dense": "dense", "paper": "codec", "codec": "codec", "compare": "metrics",
+    "metrics": "metrics",
+    "simulate": "simulate", "render": "render", "verify": "codec", "reconstruct": "reconstruct",
 }
 
 SOURCE_FOLDERS = ["include", "src", "apps", "tests", "bench", "fuzz", "tools"]

@@ -11,7 +11,7 @@
 #include "common_options.hpp"
 #include "common_report.hpp"
 #include "curlidar/cloud.hpp"
-#include "curlidar/codec.hpp"
+#include "curlidar/reconstruct.hpp"
 
 namespace curlidar::app {
 

@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "common_inputs.hpp"
 #include "curlidar/compare.hpp"
+#include "curlidar/reconstruct.hpp"
 #include "curlidar/render.hpp"
 #include "curlidar/simulate.hpp"
 

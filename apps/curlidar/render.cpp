@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "common_inputs.hpp"
 #include "curlidar/compare.hpp"
+#include "curlidar/reconstruct.hpp"
 
 namespace curlidar::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "codec/field_chunks.hpp"
-#include "curlidar/codec.hpp"
+#include "curlidar/reconstruct.hpp"
 #include "curlidar/io.hpp"
 #include "curlidar/simulate.hpp"
 #include "paper/outliers.hpp"

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "curlidar/codec.hpp"
+#include "curlidar/reconstruct.hpp"
 #include "curlidar/compare.hpp"
 #include "curlidar/io.hpp"
 #include "report/measure/inputs.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The facade: a scan in, bytes out; bytes in, a continuous scan out; clouds of any density from it.
+// The facade: a scan in, bytes out; bytes in, a continuous scan out. Clouds from it: reconstruct.hpp.
 #pragma once
 
 #include <cstddef>
@@ -262,20 +262,5 @@ struct ChunkInfo {
 };
 /// Where the bytes of a file go. Checks the container, not what the chunks hold.
 Result<std::vector<ChunkInfo>> list_chunks(std::span<const std::byte> bytes);
-
-struct ReconstructSettings {
-  double rows = 1;         ///< R_row: factor on the coded lattice's rows, may be fractional, > 0
-  double columns = 1;      ///< R_col
-  bool masks = true;       ///< apply point grid and cliffs; off gives every cell a point
-  bool organised = false;  ///< keep empty cells as NaN
-  std::size_t threads = 1;
-  std::uint64_t max_points = 1ull << 31;  ///< refuse larger grids
-};
-
-/// The cloud seen on an R_row x R_col times denser grid. With factors 1 x 1 and masks: the coded
-/// returns one for one with their attributes, or the encoded cloud of files with every return;
-/// otherwise attributes of the nearest coded return. Compact files cut off or decoded in part give
-/// what is there.
-Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& settings = {});
 
 }  // namespace curlidar

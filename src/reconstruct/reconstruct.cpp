@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/parallel.hpp"
-#include "curlidar/codec.hpp"
+#include "curlidar/reconstruct.hpp"
 
 namespace curlidar {
 namespace {

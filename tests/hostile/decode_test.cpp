@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "codec/field_chunks.hpp"
-#include "curlidar/codec.hpp"
+#include "curlidar/reconstruct.hpp"
 #include "format/parameters_chunk.hpp"
 #include "format/sensor_chunk.hpp"
 #include "hostile/targets/decode.hpp"

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/try.hpp"
+#include "curlidar/reconstruct.hpp"
 #include "peers/pcl_profiles.hpp"
 #include "report/measure/codecs.hpp"
 #include "report/measure/inputs.hpp"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/try.hpp"
+#include "curlidar/reconstruct.hpp"
 
 namespace curlidar::bench {
 namespace {

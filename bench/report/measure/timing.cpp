@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "base/try.hpp"
+#include "curlidar/reconstruct.hpp"
 #include "peers/pcl_profiles.hpp"
 #include "peers/peers.hpp"
 #include "report/measure/codecs.hpp"

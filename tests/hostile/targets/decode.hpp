@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "curlidar/codec.hpp"
+#include "curlidar/reconstruct.hpp"
 #include "hostile/targets/chunks.hpp"
 #include "support/chunks.hpp"
 

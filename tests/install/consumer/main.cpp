@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A scan through the installed library: a round room, encoded, decoded and made denser.
-#include <curlidar/codec.hpp>
+#include <curlidar/reconstruct.hpp>
 #include <curlidar/sensor.hpp>
 #include <curlidar/version.hpp>
 

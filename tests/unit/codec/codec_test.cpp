@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "curlidar/codec.hpp"
+#include "curlidar/reconstruct.hpp"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,7 @@
 #include "codec/compact_field.hpp"
 #include "compact/scan_encoder.hpp"
 #include "compact/scan_points.hpp"
-#include "curlidar/codec.hpp"
+#include "curlidar/reconstruct.hpp"
 #include "curlidar/compare.hpp"
 #include "curlidar/io.hpp"
 #include "support/data.hpp"

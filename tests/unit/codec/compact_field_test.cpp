@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "curlidar/codec.hpp"
+#include "curlidar/reconstruct.hpp"
 #include "support/scans.hpp"
 
 namespace curlidar {

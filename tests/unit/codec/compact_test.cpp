@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "curlidar/codec.hpp"
+#include "curlidar/reconstruct.hpp"
 #include "curlidar/compare.hpp"
 #include "curlidar/io.hpp"
 #include "support/data.hpp"

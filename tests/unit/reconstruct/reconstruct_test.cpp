@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "curlidar/codec.hpp"
+#include "curlidar/reconstruct.hpp"
 #include "support/scans.hpp"
 
 namespace curlidar {
