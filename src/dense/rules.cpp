@@ -3,63 +3,133 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace curlidar {
 namespace {
 
-/// Of inverse ranges: nearer ones are of one surface.
-constexpr double kSmooth = 0.2;
-/// A plane through two rings comes so near to the third.
-constexpr double kPlanar = 0.12;
+/// Shares of the nearer range. Rings no farther apart saw one surface, whatever its slope;
+constexpr double kSame = 0.05;
+/// or they did if a plane through two rings comes so near to the third
+constexpr double kPlanarApart = 0.35, kPlanar_m = 0.1;  // of how far they are apart
+/// or, of surfaces that recede upwards as grounds do, so near.
+constexpr double kReceding = 0.12;
+/// Rings whose ranges differ by more are not continued by a plane.
+constexpr double kContinued = 0.6;
 /// Nothing is seen farther than this.
 constexpr double kFarthest_m = 400;
+/// Slope of what may be ground, what its samples add to it, and how far below the eye it lies.
+constexpr double kGroundSlope = 0.15, kGroundNoise_m = 0.05, kGroundBelow_m = 0.5;
+/// A ground that ends behind something is seen up to it, give or take.
+constexpr double kFoot = 1.02;
+/// Samples look alike in a vote within this.
+constexpr double kAlikeShare = 0.06, kAlike_m = 0.2;
+constexpr int kVoters = 6;
+constexpr double kVote = 0.25;
 
-double between(const Look& look) {
-  return look.line.inverse_to(look.below.place, look.above.place);
+double met(double inverse) {
+  return inverse > 1 / kFarthest_m ? 1 / inverse : 0;
 }
 
-/// Whether the plane through `far` and `near` goes on to `next`.
-bool goes_on(const Look& look, const RingLook& far, const RingLook& near, const RingLook& next) {
-  if (!far.known) return false;
-  PlaneLine to_next = look.line;
-  to_next.along = {(next.place.rho - look.line.from.rho) / next.r,
-                   (next.place.z - look.line.from.z) / next.r};
-  const double inverse = to_next.inverse_to(far.place, near.place);
-  return std::abs(inverse * next.r - 1) < kPlanar;
+PlaneLine towards(const PlaneLine& line, const RingLook& ring) {
+  PlaneLine to = line;
+  to.along = {(ring.place.rho - line.from.rho) / ring.r, (ring.place.z - line.from.z) / ring.r};
+  return to;
 }
 
-DenseMode mode_of(const Look& look) {
-  const bool above = look.above.known, below = look.below.known;
-  if (!above && !below) return DenseMode::none;
-  if (!above) return DenseMode::only_below;
-  if (!below) return DenseMode::only_above;
-  const double near = std::min(look.above.r, look.below.r);
-  const double far = std::max(look.above.r, look.below.r);
-  if (far - near < kSmooth * near) return DenseMode::smooth;
-  if (goes_on(look, look.below2, look.below, look.above) ||
-      goes_on(look, look.above2, look.above, look.below)) {
-    return DenseMode::planar;
-  }
-  return look.share > 0.5 ? DenseMode::jump_above : DenseMode::jump_below;
+/// Whether `far` and `near` are known and near enough to make a plane.
+bool make_plane(const RingLook& far, const RingLook& near) {
+  return far.known && near.known &&
+         std::abs(far.r - near.r) <= kContinued * std::min(far.r, near.r);
 }
 
-double range_of(const Look& look, DenseMode mode) {
-  switch (mode) {
-    case DenseMode::none:
-      return 0;
-    case DenseMode::smooth:
-    case DenseMode::planar: {
-      const double inverse = between(look);
-      return inverse > 1 / kFarthest_m ? 1 / inverse : 0;
+/// By how much the plane through `far` and `near` misses `next`, as a length along its line of
+/// sight; infinite if they make none.
+double miss(const PlaneLine& line, const RingLook& far, const RingLook& near,
+            const RingLook& next) {
+  const double nowhere = std::numeric_limits<double>::infinity();
+  if (!make_plane(far, near)) return nowhere;
+  const double there = met(towards(line, next).inverse_to(far.place, near.place));
+  return there > 0 ? std::abs(there - next.r) : nowhere;
+}
+
+/// Whether two neighbouring rings lie on ground, `far` farther from the sensor's ring plane.
+bool on_ground(const PlaneLine& line, const RingLook& lower, const RingLook& upper) {
+  if (!make_plane(lower, upper)) return false;
+  const double out = upper.place.rho - lower.place.rho, up = upper.place.z - lower.place.z;
+  return out > 0 && std::abs(up) <= kGroundSlope * out + kGroundNoise_m &&
+         upper.place.z < line.from.z - kGroundBelow_m;
+}
+
+/// Weight of the samples of a ring that look like a range, the nearer ones in azimuth first.
+double alike(const RingPoints& points, const PlaneLine& line, const RingLook& ring, double r) {
+  const Neighbours beside = neighbours_of(points, line, ring.ring);
+  double weight = 0;
+  for (int column = -kVoters; column <= kVoters; ++column) {
+    const double there = beside.at(column);
+    if (there > 0 && std::abs(there - r) < kAlikeShare * r + kAlike_m) {
+      weight += 1.0 / (std::abs(column) + 1);
     }
-    case DenseMode::jump_below:
-    case DenseMode::only_below:
-      return look.below.r;
-    case DenseMode::jump_above:
-    case DenseMode::only_above:
-      return look.above.r;
   }
-  return 0;
+  return weight;
+}
+
+/// Of two surfaces the one that reaches further towards the line of sight.
+Guess vote(const RingPoints& points, const Look& look) {
+  const double above = look.share + kVote * alike(points, look.line, look.below, look.above.r);
+  const double below = 1 - look.share + kVote * alike(points, look.line, look.above, look.below.r);
+  return above > below ? Guess{DenseMode::jump_above, look.above.r, 1}
+                       : Guess{DenseMode::jump_below, look.below.r, 0};
+}
+
+Guess jump(const RingPoints& points, const Look& look) {
+  if (look.above.r > look.below.r && on_ground(look.line, look.below2, look.below)) {
+    // The ground goes on until it meets what stands on it.
+    const double ground = met(look.line.inverse_to(look.below2.place, look.below.place));
+    if (ground > 0 && ground < kFoot * look.above.r) return {DenseMode::jump_below, ground, 0};
+    return {DenseMode::jump_above, look.above.r, 1};
+  }
+  return vote(points, look);
+}
+
+bool one_surface(const Look& look) {
+  const double a = look.above.r, b = look.below.r;
+  return std::abs(a - b) < kSame * std::min(a, b);
+}
+
+bool one_plane(const Look& look) {
+  const double a = look.above.r, b = look.below.r, apart = std::abs(a - b);
+  const double up = miss(look.line, look.below2, look.below, look.above);
+  const double down = miss(look.line, look.above2, look.above, look.below);
+  if (std::min(up, down) < kPlanarApart * apart + kPlanar_m) return true;
+  return a > b && (up < kReceding * a || down < kReceding * b);
+}
+
+/// One ring alone: a ground goes on, anything else keeps its distance.
+Guess alone(const Look& look) {
+  if (look.below.known) {
+    Guess guess{DenseMode::only_below, look.below.r, 0};
+    if (on_ground(look.line, look.below2, look.below)) {
+      const double ground = met(look.line.inverse_to(look.below2.place, look.below.place));
+      if (ground > look.below.r && ground < 2 * look.below.r) guess.r = ground;
+    }
+    return guess;
+  }
+  Guess guess{DenseMode::only_above, look.above.r, 1};
+  if (on_ground(look.line, look.above, look.above2)) {
+    const double ground = met(look.line.inverse_to(look.above.place, look.above2.place));
+    if (ground < look.above.r && 2 * ground > look.above.r) guess.r = ground;
+  }
+  return guess;
+}
+
+Guess between_rings(const RingPoints& points, const Look& look) {
+  if (!look.above.known && !look.below.known) return {};
+  if (!look.above.known || !look.below.known) return alone(look);
+  const double chord = met(look.line.inverse_to(look.below.place, look.above.place));
+  if (chord > 0 && one_surface(look)) return {DenseMode::smooth, chord, look.share};
+  if (chord > 0 && one_plane(look)) return {DenseMode::planar, chord, look.share};
+  return jump(points, look);
 }
 
 Seen seen_by(const RingPoints& points, const Look& look, const Guess& guess) {
@@ -72,24 +142,21 @@ Seen seen_by(const RingPoints& points, const Look& look, const Guess& guess) {
   return (above ? look.share : 1 - look.share) >= 0.5 ? Seen::surface : Seen::nothing;
 }
 
-/// Beyond the outermost rings: how far in ring steps, and the ring that is continued.
+/// Beyond the outermost rings: theirs, continued half a step.
 Guess beyond_edge(const RingPoints& points, const Look& look) {
-  Guess guess;
   const bool top = look.above.ring < 0;
   const RingLook& edge = top ? look.below : look.above;
   const RingLook& inner = top ? look.below2 : look.above2;
-  if (!edge.known) return guess;
+  if (!edge.known) return {};
   const auto& elevations = points.elevations();
   const std::size_t rings = points.rings();
   const double step = rings < 2 ? 0.01
                       : top     ? elevations[0] - elevations[1]
                                 : elevations[rings - 2] - elevations[rings - 1];
-  guess.mode = top ? DenseMode::only_below : DenseMode::only_above;
-  guess.above_share = top ? 0 : 1;
-  guess.r = edge.r;
-  if (inner.known && std::abs(inner.r - edge.r) < kSmooth * std::min(inner.r, edge.r)) {
-    const double inverse = look.line.inverse_to(edge.place, inner.place);
-    if (std::abs(inverse * edge.r - 1) < kSmooth) guess.r = 1 / inverse;
+  Guess guess{top ? DenseMode::only_below : DenseMode::only_above, edge.r, top ? 0.0 : 1.0};
+  if (make_plane(inner, edge)) {
+    const double there = met(look.line.inverse_to(inner.place, edge.place));
+    if (there > edge.r / 2 && there < 2 * edge.r) guess.r = there;
   }
   const double away = std::abs(look.line.side(edge.place)) / edge.r;
   guess.seen = edge.here() && away <= 0.5 * step ? Seen::surface : Seen::unknown;
@@ -100,21 +167,7 @@ Guess beyond_edge(const RingPoints& points, const Look& look) {
 
 Guess decide(const RingPoints& points, const Look& look) {
   if (look.above.ring < 0 || look.below.ring < 0) return beyond_edge(points, look);
-  Guess guess;
-  guess.mode = mode_of(look);
-  guess.r = range_of(look, guess.mode);
-  switch (guess.mode) {
-    case DenseMode::jump_above:
-    case DenseMode::only_above:
-      guess.above_share = 1;
-      break;
-    case DenseMode::smooth:
-    case DenseMode::planar:
-      guess.above_share = look.share;
-      break;
-    default:
-      break;
-  }
+  Guess guess = between_rings(points, look);
   guess.seen = seen_by(points, look, guess);
   return guess;
 }
