@@ -15,7 +15,7 @@ constexpr double kPlanarApart = 0.35, kPlanar_m = 0.1;  // of how far they are a
 /// or, of surfaces that recede upwards as grounds do, so near.
 constexpr double kReceding = 0.12;
 /// Rings whose ranges differ by more are not continued by a plane.
-constexpr double kContinued = 0.6;
+constexpr double kContinued = 2;
 /// Nothing is seen farther than this.
 constexpr double kFarthest_m = 400;
 /// Slope of what may be ground, what its samples add to it, and how far below the eye it lies.
