@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/parallel.hpp"
+#include "dense/confidence.hpp"
 
 namespace curlidar {
 namespace {
@@ -42,7 +43,7 @@ void add_sources(const RingLook& ring, double share, std::size_t at, Sources& so
 }  // namespace
 
 DenseField::DenseField(std::shared_ptr<const Field> field, const DenseSettings&)
-    : field_(std::move(field)), points_(*field_) {}
+    : field_(std::move(field)), points_(*field_), noise_m_(ring_noise_m(points_)) {}
 
 DenseField::Found DenseField::find_in_plane(const PlaneLine& line) const {
   Found found;
@@ -83,7 +84,7 @@ RangeEstimate DenseField::estimate(const Sightline& line) const {
   const Found found = find({line.origin, line.direction * (1 / norm(line.direction))});
   if (found.guess.r > 0) estimate.range_m = found.guess.r;
   estimate.seen = found.guess.seen;
-  estimate.confidence = plain_confidence(found.look, found.guess, 0);
+  estimate.confidence = plain_confidence(found.look, found.guess, noise_m_);
   return estimate;
 }
 

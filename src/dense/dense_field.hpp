@@ -56,6 +56,7 @@ class DenseField final : public Field {
 
   std::shared_ptr<const Field> field_;
   RingPoints points_;
+  double noise_m_ = 0;  ///< of the samples, for confidence
 };
 
 }  // namespace curlidar

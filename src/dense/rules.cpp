@@ -26,6 +26,10 @@ constexpr double kFoot = 1.02;
 constexpr double kAlikeShare = 0.06, kAlike_m = 0.2;
 constexpr int kVoters = 6;
 constexpr double kVote = 0.25;
+/// Columns: a sample is beside; between two of one surface there may be a hole so wide; samples
+/// tell how wild a surface is.
+constexpr double kFarApart_m = 3;
+constexpr double kBeside = 1.5, kHole = 4.5, kSpreadReach = 2.6;
 
 double met(double inverse) {
   return inverse > 1 / kFarthest_m ? 1 / inverse : 0;
@@ -132,14 +136,58 @@ Guess between_rings(const RingPoints& points, const Look& look) {
   return jump(points, look);
 }
 
+/// How much of a return a ring lets expect: all beside its samples and in holes of one surface.
+double presence(const RingLook& ring) {
+  if (!ring.known) return 0;
+  if (ring.near <= kBeside || (ring.mixed && ring.left.away + ring.right.away <= kHole)) return 1;
+  return 0;
+}
+
 Seen seen_by(const RingPoints& points, const Look& look, const Guess& guess) {
-  if (guess.mode == DenseMode::none || !(guess.r > 0)) {
-    return points.fired(look.line.azimuth) ? Seen::nothing : Seen::unknown;
+  if (guess.mode != DenseMode::none && guess.r > 0) {
+    const double above = presence(look.above), below = presence(look.below);
+    if (look.share * above + (1 - look.share) * below >= 0.5) return Seen::surface;
   }
-  const bool above = look.above.here(), below = look.below.here();
-  if (above && below) return Seen::surface;
-  if (!above && !below) return points.fired(look.line.azimuth) ? Seen::nothing : Seen::unknown;
-  return (above ? look.share : 1 - look.share) >= 0.5 ? Seen::surface : Seen::nothing;
+  return points.fired(look.line.azimuth) ? Seen::nothing : Seen::unknown;
+}
+
+/// How much the samples of a ring around a line of sight differ, as the logarithm of a ratio.
+double spread(const RingPoints& points, const PlaneLine& line, const RingLook& ring) {
+  if (!ring.known) return 0;
+  const auto at = static_cast<std::size_t>(ring.ring);
+  const std::size_t beyond = points.first_beyond(at, line.azimuth);
+  double least = ring.r, most = ring.r;
+  for (std::ptrdiff_t step = -2; step < 2; ++step) {
+    const RingPoint& p = points.walk(at, beyond, step);
+    const double away = std::abs(turn_between(line.azimuth, p.azimuth)) / points.column_step();
+    if (away > kSpreadReach) continue;
+    const double r = line.distance({p.rho, p.z});
+    least = std::min(least, r);
+    most = std::max(most, r);
+  }
+  return std::log(most / least);
+}
+
+/// As counted where rings of six sensors were left out.
+double doubt_of(const RingPoints& points, const Look& look, const Guess& guess) {
+  if (!(guess.r > 0)) return 1;
+  // The wrong one of two surfaces is the worse the farther they are apart.
+  if (guess.jump()) {
+    return 0.65 + 0.2 * (1 - std::exp(-std::abs(look.above.r - look.below.r) / kFarApart_m));
+  }
+  const double wild =
+      std::max(spread(points, look.line, look.above), spread(points, look.line, look.below));
+  const double nearest =
+      std::max(look.above.known ? look.above.near : 0, look.below.known ? look.below.near : 0);
+  const double far = nearest > kBeside ? 0.15 : nearest > 0.75 ? 0.1 : 0;
+  switch (guess.mode) {
+    case DenseMode::smooth:
+      return std::min(0.01 + 1.2 * wild, 0.16) + far;
+    case DenseMode::planar:
+      return std::min(0.01 + 3 * wild, 0.4) + far;
+    default:
+      return std::min(0.1 + wild, 0.3) + far;
+  }
 }
 
 /// Beyond the outermost rings: theirs, continued half a step.
@@ -158,6 +206,7 @@ Guess beyond_edge(const RingPoints& points, const Look& look) {
     const double there = met(look.line.inverse_to(inner.place, edge.place));
     if (there > edge.r / 2 && there < 2 * edge.r) guess.r = there;
   }
+  guess.doubt = doubt_of(points, look, guess);
   const double away = std::abs(look.line.side(edge.place)) / edge.r;
   guess.seen = edge.here() && away <= 0.5 * step ? Seen::surface : Seen::unknown;
   return guess;
@@ -169,22 +218,8 @@ Guess decide(const RingPoints& points, const Look& look) {
   if (look.above.ring < 0 || look.below.ring < 0) return beyond_edge(points, look);
   Guess guess = between_rings(points, look);
   guess.seen = seen_by(points, look, guess);
+  guess.doubt = doubt_of(points, look, guess);
   return guess;
-}
-
-float plain_confidence(const Look& look, const Guess& guess, double step_m) {
-  if (!(guess.r > 0)) return 0;
-  // What the surface may do between samples that lie so far apart, metres.
-  const double width = std::max(look.gap, 1e-4) * guess.r;
-  double error = 0.5 * step_m + 0.02 + 0.05 * width;
-  if (look.above.known && look.below.known) {
-    error += 0.05 * std::abs(look.above.r - look.below.r);
-  }
-  if (guess.mode == DenseMode::planar) error *= 1.5;
-  if (guess.jump()) error = 0.3 + error;
-  if (guess.mode == DenseMode::only_below || guess.mode == DenseMode::only_above) error *= 3;
-  const double there = guess.seen == Seen::surface ? 0.95 : 0.2;
-  return static_cast<float>(there * (1 - std::exp(-0.05 / error)));
 }
 
 }  // namespace curlidar

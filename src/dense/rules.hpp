@@ -25,15 +25,12 @@ struct Guess {
   double r = 0;            ///< along the line of sight, metres; 0: nothing to guess from
   double above_share = 0;  ///< how much of it the ring above says, 0 .. 1
   Seen seen = Seen::unknown;
+  double doubt = 1;  ///< probability that it is grossly wrong, or nothing is there
 
   bool jump() const { return mode == DenseMode::jump_below || mode == DenseMode::jump_above; }
 };
 
 /// The surface along the line of `look`.
 Guess decide(const RingPoints& points, const Look& look);
-
-/// P(a surface is there within 5 cm of the guess) as far as a few numbers tell; `step_m`: what the
-/// samples are quantised to.
-float plain_confidence(const Look& look, const Guess& guess, double step_m);
 
 }  // namespace curlidar
