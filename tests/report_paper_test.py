@@ -2,53 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The report's sections of the paper's comparisons: what their tables make of measured lines, of
 codecs that are missing and of scans that cannot be taken."""
-import sys
-import tomllib
 import unittest
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT / "bench/report"), str(ROOT / "bench")]
-from frame.cells import Missing, Published  # noqa: E402
-from frame.scans import Scan, Scene  # noqa: E402
-from sections import continuous, one_to_one, timing  # noqa: E402
+from report_support import KITTI, OTHER, ROOM, FakeContext, by
+from frame.cells import Missing
+from sections import one_to_one, timing
 
-KITTI = Scan("kitti_raw/a.pcd", Path("a.pcd"), "HDL-64E")
-OTHER = Scan("velodyne/b.pcd", Path("b.pcd"), "HDL-32E")
-ROOM = Scene("room", "os1-64-gen1", "indoor")
 STATISTICS = {"count": 9, "mean": .1, "std": .1, "rms": .2, "p50": .05, "p95": .3, "max": 1.}
-
-
-class FakeContext:
-    """Answers with lines instead of running anything."""
-
-    def __init__(self, answer, scans=(KITTI,), scenes=(ROOM,), quick=False):
-        self.answer, self.scans, self.scenes, self.quick = answer, list(scans), list(scenes), quick
-        self.bin, self.asked = Path("bin"), []
-        text = (ROOT / "bench/report/published.toml").read_text(encoding="utf-8")
-        self.published = tomllib.loads(text)
-
-    @property
-    def inputs(self):
-        return [*self.scans, *self.scenes]
-
-    def cloud(self, item):
-        return Path(item.id)
-
-    def published_rows(self, table, **wanted):
-        return [{key: Published(value, row["source"]) if isinstance(value, (int, float)) else value
-                 for key, value in row.items()} for row in self.published[table]
-                if all(row.get(key) == value for key, value in wanted.items())]
-
-    def measure(self, _section, key, command):
-        self.asked.append([str(part) for part in command])
-        return self.answer(key)
-
-
-def by(table, **wanted):
-    found = [row for row in table.rows if all(row[key] == value for key, value in wanted.items())]
-    assert len(found) == 1, f"{len(found)} rows are {wanted}"
-    return found[0]
 
 
 def coded(codec, setting, **more):
@@ -119,79 +79,6 @@ class OneToOneTest(unittest.TestCase):
         tables = one_to_one.tables(FakeContext(one_to_one_lines))
         tables[1].rows.pop(0)
         self.assertEqual(len(list(one_to_one.check(None, tables))), 1)
-
-
-def told(method, setting, **more):
-    return {"method": method, "setting": setting, "points": 9, "mean": .1, "rms": .2, "p50": .05,
-            "p95": .3, "max": 1., "within_5cm": .5, "completeness": .9, **more}
-
-
-METHODS = [("baseline", "degree 64"), ("paper", "S 1x1"), ("paper", "S 2x1"),
-           ("paper", "S 2x2"), ("compact", "5 cm"), ("linear", "raw samples"),
-           ("edge-aware", "raw samples")]
-LIMITS = {"min_range_m": 5., "max_range_m": 20.}
-
-
-def continuous_lines(key):
-    skipped = {"method": "compact", "setting": "1 bit a point", "skipped": "out of reach"}
-    if key["part"] == "truth":
-        return [{"returns": 9, **LIMITS}, skipped,
-                *(told(*each, factor=float(factor), no_surface=1, bits_per_point=1.)
-                  for each in METHODS for factor in (2, 4, 8))]
-    if key["input"] == OTHER.name:
-        return [{"skipped": "the rings of the scan cannot be told"}]
-    common = {**STATISTICS, "count": 1000 if key["every"] == 2 else 10}
-    return [{"preset": "outdoor", "rings": 64, "rings_coded": 32, "returns_coded": 90,
-             "returns_held_out": 80, **LIMITS}, skipped,
-            *(told(*each, common=common) for each in METHODS)]
-
-
-class ContinuousTest(unittest.TestCase):
-    def tables(self, **options):
-        context = FakeContext(continuous_lines, **options)
-        return {table.id: table for table in continuous.tables(context)}
-
-    def test_tables_of_truth_and_of_rings_held_out(self):
-        tables = self.tables()
-        truth = tables["continuous-truth-room-os1-64-gen1"]
-        self.assertEqual(len(truth.rows), 1 + 3 * len(METHODS))
-        self.assertEqual(by(truth, setting="1 bit a point")["mean"], Missing("out of reach"))
-        held_out = tables["continuous-held-out-kitti_raw-a"]
-        self.assertEqual([row["every"] for row in held_out.rows if row["setting"] == "5 cm"],
-                         [2, 4, 8])
-        self.assertEqual(list(continuous.check(None, tables.values())), [])
-
-    def test_means_over_a_few_common_returns_are_not_shown(self):
-        rows = self.tables()["continuous-held-out-kitti_raw-a"].rows
-        shown = {row["every"]: row["common_mean"] for row in rows if row["setting"] == "5 cm"}
-        self.assertEqual(shown[2], .1)
-        self.assertIsInstance(shown[8], Missing)
-
-    def test_scans_without_rings_are_listed_with_the_reason(self):
-        tables = self.tables(scans=[OTHER])
-        self.assertEqual({row["why"] for row in tables["continuous-left-out"].rows},
-                         {"the rings of the scan cannot be told"})
-        self.assertNotIn("continuous-held-out-velodyne-b", tables)
-
-    def test_our_runs_of_the_papers_method_stand_beside_its_own(self):
-        table = self.tables()["continuous-published"]
-        row = by(table, dataset="INDOOR", method="paper S=2x1")
-        self.assertEqual((row["mean_2_m"].value, row["ours_2"]), (.0042, .1))
-        self.assertEqual(by(table, dataset="INDOOR", method="baseline")["ours_8"], .1)
-        self.assertIsInstance(by(table, dataset="Newer College", method="paper S=2x1")["ours_2"],
-                              Missing)
-
-    def test_quick_runs_measure_fewer_factors(self):
-        context = FakeContext(continuous_lines, quick=True)
-        continuous.measure(context)
-        self.assertEqual(len(context.asked), 3)
-        self.assertIn("2,8", context.asked[0])
-        self.assertNotIn("--baseline", context.asked[0])
-
-    def test_a_measurement_that_failed_has_its_row(self):
-        context = FakeContext(lambda _key: [{"failure": "it ended with 1"}])
-        for table in continuous.tables(context)[:2]:
-            self.assertEqual(table.rows[0]["mean"], Missing("it ended with 1"))
 
 
 def timing_lines(pcl=True):

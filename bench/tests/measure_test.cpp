@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the measurements of the report stand on: arguments, aiming at directions, splitting rings,
-// counting errors.
+// What the measurements of the report stand on: arguments, splitting rings, judging what is told.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "curlidar/simulate.hpp"
 #include "report/measure/arguments.hpp"
-#include "report/measure/held_out.hpp"
-#include "report/measure/methods.hpp"
+#include "report/measure/judge.hpp"
+#include "report/measure/ring_split.hpp"
+#include "report/measure/truth.hpp"
 
 namespace curlidar::bench {
 namespace {
@@ -74,12 +76,11 @@ TEST(Factors, AreNumbersBetweenCommas) {
 }
 
 TEST(FieldSampler, FindsTheBeamThatEndsInADirection) {
-  DecodedScan scan;
-  scan.field = std::make_shared<RaisedField>();
-  const Vec3 direction = direction_of(0.11, 1.234);
-  const double range = FieldSampler(scan).range(direction);
-  EXPECT_NEAR(norm(direction * range - Vec3{0, 0, RaisedField::kHeight_m}), RaisedField::kRange_m,
-              1e-5);
+  const std::vector<Vec3> directions{direction_of(0.11, 1.234)};
+  const auto estimates = FieldSampler(std::make_shared<RaisedField>()).tell(directions);
+  ASSERT_EQ(estimates.size(), 1u);
+  EXPECT_NEAR(norm(directions[0] * estimates[0].range_m - Vec3{0, 0, RaisedField::kHeight_m}),
+              RaisedField::kRange_m, 1e-5);
 }
 
 TEST(SplitRings, KeepsEveryNthAndLeavesOutThoseBelowTheLast) {
@@ -101,21 +102,101 @@ TEST(SplitRings, KeepsEveryNthAndLeavesOutThoseBelowTheLast) {
   EXPECT_TRUE(validate(split.sensor));
 }
 
-TEST(RayTally, CountsWhatIsToldWithinTheLimits) {
-  RayTally tally({1, 10});
-  tally.add(5.0, 5.01);          // a good point
-  tally.add(5.0, 30.0);          // the surface is beyond the limits: counts as an error
-  tally.add(5.0, std::nullopt);  // no surface
-  tally.add(kNan, 6.0);          // missed
-  tally.add(12.0, 6.0);          // told outside: as good as missed
-  tally.add(kNan, 40.0);         // nothing to find there
-  const RayErrors errors = tally.errors();
+RangeEstimate told(double range_m, double confidence = 0.5) {
+  return {range_m, static_cast<float>(confidence), Seen::surface};
+}
+
+TEST(Judge, CountsWhatIsToldWithinTheLimits) {
+  const Judge judge({5.01, 30, kNan, 6, 6, 40}, {1, 10});
+  const RayErrors errors = judge.errors(
+      std::vector<RangeEstimate>{told(5),   // a good point
+                                 told(5),   // the surface is beyond the limits: counts as an error
+                                 told(5),   // no surface
+                                 {},        // missed
+                                 told(12),  // told outside: as good as missed
+                                 {}});      // nothing to find there
   EXPECT_EQ(errors.points, 3u);
   EXPECT_EQ(errors.stats.count, 2u);
   EXPECT_NEAR(errors.stats.mean, (0.01 + 25) / 2, 1e-12);
   EXPECT_DOUBLE_EQ(errors.within_5cm, 0.5);
   EXPECT_DOUBLE_EQ(errors.completeness, 1.0 / 3);
   EXPECT_EQ(errors.no_surface, 1u);
+}
+
+TEST(Judge, CutsBothMethodsToTheLinesThatTheyTrustMost) {
+  const Judge judge({5, 5, 5, 5}, {});
+  const std::vector<RangeEstimate> ours{told(5.1, 0.2), told(5.5, 0.1), told(5.2, 0.9),
+                                        told(5, 0.3)};
+  const std::vector<RangeEstimate> others{{}, told(6, 0.9), told(7, 0.1), told(6, 0.8)};
+  const EqualCut cut = judge.equal_cut(ours, others);
+  EXPECT_DOUBLE_EQ(cut.completeness, 0.75);
+  EXPECT_NEAR(cut.p50, 0.1, 1e-12);
+  EXPECT_NEAR(cut.other_p50, 1, 1e-12);
+  const Trade half = judge.most_trusted(ours, 0.5);
+  EXPECT_DOUBLE_EQ(half.completeness, 0.5);
+  EXPECT_NEAR(half.p50, 0.1, 1e-12);  // of 0.2 and 0
+  EXPECT_DOUBLE_EQ(half.within_5cm, 0.5);
+}
+
+TEST(Judge, CountsConfidencesInTenBins) {
+  const Judge judge({5, 5, kNan, 5}, {});
+  const std::vector<RangeEstimate> estimates{
+      told(5.01, 0.95), told(5.2, 1), {5, 0.92F, Seen::unknown}, {5, 0.05F, Seen::nothing}};
+  const std::vector<ConfidenceBin> bins = judge.confidence(estimates);
+  ASSERT_EQ(bins.size(), 10u);
+  EXPECT_EQ(bins[9].count, 3u);
+  EXPECT_NEAR(bins[9].told, (0.95 + 1 + 0.92) / 3, 1e-6);
+  EXPECT_DOUBLE_EQ(bins[9].observed, 1.0 / 3);
+  EXPECT_DOUBLE_EQ(bins[0].observed, 1);
+  EXPECT_EQ(bins[5].count, 0u);
+}
+
+TEST(Judge, TradesCompletenessForPrecision) {
+  const Judge judge({5, 5, 5}, {});
+  const std::vector<RangeEstimate> estimates{told(5.3, 0.32), told(5.2, 0.61), told(5.1, 0.88)};
+  const std::vector<Trade> trades = judge.trades(estimates);
+  ASSERT_EQ(trades.size(), 20u);
+  EXPECT_DOUBLE_EQ(trades[0].completeness, 1);
+  EXPECT_NEAR(trades[0].p50, 0.2, 1e-12);
+  EXPECT_DOUBLE_EQ(trades[12].min_confidence, 0.6);
+  EXPECT_DOUBLE_EQ(trades[12].completeness, 2.0 / 3);
+  EXPECT_DOUBLE_EQ(trades[19].completeness, 0);
+}
+
+TEST(SplitRings, AskInTheGapsOfTheHeldOutRings) {
+  const SensorProfile sensor = small_sensor(3);
+  Cloud cloud;
+  for (std::size_t ring = 0; ring < 3; ++ring) {
+    for (std::uint32_t column = 0; column < sensor.columns; ++column) {
+      const bool missing = ring == 1 && column >= 10 && column < 13;
+      const double azimuth = -3 + 6.28318530717958648 * column / sensor.columns;
+      cloud.positions.push_back(missing ? Vec3{}
+                                        : direction_of(sensor.rings[ring].elevation, azimuth) * 9);
+    }
+  }
+  cloud.width = static_cast<std::uint32_t>(cloud.size());
+  const RingSplit split = split_rings(cloud, assign_rings(cloud, sensor).value(), 2);
+  EXPECT_EQ(split.held_out.size(), sensor.columns - 3u);
+  ASSERT_EQ(split.gaps.size(), 3u);
+  for (const Vec3& gap : split.gaps) {
+    EXPECT_NEAR(elevation_of(gap), sensor.rings[1].elevation, 1e-9);
+    EXPECT_NEAR(norm(gap), 1, 1e-12);
+  }
+}
+
+TEST(Calibrated, TakesTheMedianErrorOfTheRingFromTheOtherSectors) {
+  std::vector<Vec3> returns;
+  std::vector<std::uint16_t> rings;
+  std::vector<RangeEstimate> estimates;
+  for (int degree = -170; degree < 170; ++degree) {
+    returns.push_back(direction_of(0, degree * 0.0174532925) * 10);
+    rings.push_back(static_cast<std::uint16_t>(degree & 1));
+    estimates.push_back(told(rings.back() == 0 ? 10.03 : 9.98));
+  }
+  estimates.push_back(told(7));  // a gap
+  for (const RangeEstimate& estimate : calibrated(estimates, returns, rings)) {
+    EXPECT_NEAR(estimate.range_m, estimate.range_m > 8 ? 10 : 7, 1e-9);
+  }
 }
 
 TEST(Methods, AllTellRangesBetweenTheRowsOfARoom) {
@@ -131,6 +212,9 @@ TEST(Methods, AllTellRangesBetweenTheRowsOfARoom) {
   paper.paper.outlier_radius_m = 0;
   paper.sensor = sensor;
   paper.attributes.emplace();
+  const std::vector<Vec3> rays = rays_between(rings, 2, 100'000);
+  EXPECT_EQ(rays.size(), 15u * sensor.columns);
+  const Judge judge(true_ranges(*room, rays), {});
   for (const Method& method : make_methods({.cloud = &cloud,
                               .paper = paper,
                               .compact_sensor = sensor,
@@ -142,18 +226,9 @@ TEST(Methods, AllTellRangesBetweenTheRowsOfARoom) {
       EXPECT_EQ(method.setting, "1 bit a point") << method.skipped;  // too coarse a sensor for it
       continue;
     }
-    const auto rays = method.sampler->between_rows(2);
-    ASSERT_TRUE(rays);
-    EXPECT_EQ(rays->size(), 15u * sensor.columns);
-    // The field says the same on its grid as in any direction.
-    std::size_t told = 0, same = 0;
-    for (const RayRange& ray : *rays) {
-      if (std::isnan(ray.range_m)) continue;
-      ++told;
-      same += std::abs(method.sampler->range(ray.direction) - ray.range_m) < 1e-3 ? 1 : 0;
-    }
-    EXPECT_GT(told, rays->size() / 3);
-    EXPECT_GT(same, told * 95 / 100);
+    const RayErrors errors = judge.errors(method.sampler->tell(rays));
+    EXPECT_GT(errors.completeness, 0.4);
+    EXPECT_LT(errors.stats.p50, method.bytes > 0 && method.step_m > 0 ? 0.4 : 0.1);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reconstruction between the samples by the paper's profile, against exact truth, for every
 // simulated scene; `report_measure truth` measures the other methods as well.  Usage: scene_truth
+#include <cstddef>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/try.hpp"
+#include "report/measure/inputs.hpp"
 #include "report/measure/truth.hpp"
 
 namespace {
@@ -27,14 +29,17 @@ constexpr Case kCases[] = {{"street", "hdl64e-kitti", "outdoor"},
                            {"room", "os1-64-gen1", "indoor"},
                            {"corridor", "os1-64-gen1", "indoor"}};
 
+constexpr std::size_t kRays = 100'000;  // of each factor
+
 Status print_case(const Case& c) {
   CURLIDAR_TRY_ASSIGN(simulated, simulate_scan(c.scene, c.sensor, c.preset, 1));
   CURLIDAR_TRY_ASSIGN(limits, limits_of(simulated.cloud, simulated.settings));
   for (const Method& method : paper_methods(simulated.cloud, simulated.settings)) {
     if (!method.sampler) return Error{ErrorCode::invalid_argument, method.skipped};
     for (const double factor : {2.0, 4.0, 8.0}) {
-      CURLIDAR_TRY_ASSIGN(rays, method.sampler->between_rows(factor));
-      const RayErrors errors = judge(*simulated.scene, rays, limits);
+      const std::vector<Vec3> rays = rays_between(simulated.rings, factor, kRays);
+      const Judge judge(true_ranges(*simulated.scene, rays), limits);
+      const RayErrors errors = judge.errors(method.sampler->tell(rays));
       fmt::print(
           "| {} | {} | {} | {} | {:.1f} | {:g}x1 | {} | {:.3f} | {:.3f} | {:.3f} | {:.1f} | "
           "{:.1f} | {} |\n",

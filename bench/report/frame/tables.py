@@ -3,7 +3,7 @@
 import re
 from dataclasses import dataclass, field
 
-from frame.cells import BadCell, Cell, Published, refuse_bad
+from frame.cells import BadCell, Cell, Missing, Published, refuse_bad
 
 ID = re.compile(r"[a-z0-9][a-z0-9._-]*\Z")
 
@@ -48,6 +48,11 @@ class Table:
         return list(dict.fromkeys(
             cell.source for row in self.rows for column in self.columns
             if isinstance(cell := row[column.key], Published)))
+
+
+def rows_or(rows, columns, why):
+    """The rows, or one that says in every cell why there is none."""
+    return rows or [dict.fromkeys((column.key for column in columns), Missing(why))]
 
 
 @dataclass

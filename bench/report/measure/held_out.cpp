@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reconstruction between the rings of a real scan: rings 0, K, 2K .. are coded, the returns of the
 // rings between them are predicted in their exact directions.
-#include <algorithm>
-#include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,14 +9,15 @@
 #include <fmt/format.h>
 
 #include "base/try.hpp"
-#include "report/measure/held_out.hpp"
 #include "report/measure/inputs.hpp"
 #include "report/measure/methods.hpp"
-#include "report/measure/truth.hpp"
+#include "report/measure/ring_split.hpp"
 #include "report/measure/verbs.hpp"
 
 namespace curlidar::bench {
 namespace {
+
+constexpr double kHalf = 0.5;  // completeness at which the most trusted are judged
 
 /// Why rings cannot be held out; empty if they can.
 std::string why_not(const Detection& detection, std::uint32_t every) {
@@ -31,84 +31,58 @@ std::string why_not(const Detection& detection, std::uint32_t every) {
   return {};
 }
 
-/// The paper's settings for fewer rows. No more columns than the sensor has, or directions between
-/// them would see empty cells for cliffs. Rows spread evenly over the field of view are not where
-/// the rings of every sensor are, and fewer of them miss by more: rows are the rings. What is
-/// farther from the next row than a cliff allows must be allowed to be so by as much more.
-EncodeSettings for_every_nth(EncodeSettings settings, const SensorProfile& sensor,
-                             std::uint32_t every) {
-  settings.sensor = sensor;
-  settings.paper.row_rule = RowRule::rings;
-  settings.paper.columns = std::min(settings.paper.columns, sensor.columns);
-  CliffThresholds& cliffs = settings.paper.cliffs;
-  cliffs.row_m *= every;
-  cliffs.diagonal_m = std::hypot(cliffs.row_m, cliffs.column_m);
-  return settings;
-}
+/// What is asked and what is true: the held-out returns, then the gaps of their rings.
+struct Asked {
+  std::vector<Vec3> directions;
+  std::vector<double> true_m;
+};
 
-/// Ranges that a method tells in the directions of the points; nothing without a sampler.
-std::vector<double> predict(const Method& method, const std::vector<Vec3>& points) {
-  std::vector<double> ranges;
-  if (!method.sampler) return ranges;
-  for (const Vec3& p : points) ranges.push_back(method.sampler->range(p * (1 / norm(p))));
-  return ranges;
-}
-
-/// Which of the points every method tells a range of within the limits.
-std::vector<bool> told_by_all(const std::vector<std::vector<double>>& predictions,
-                              std::size_t points, const RangeLimits& limits) {
-  std::vector<bool> told(points, true);
-  for (const std::vector<double>& ranges : predictions) {
-    for (std::size_t i = 0; i < ranges.size(); ++i) told[i] = told[i] && limits.hold(ranges[i]);
+Asked asked_of(const RingSplit& split) {
+  Asked asked;
+  for (const Vec3& p : split.held_out) {
+    asked.directions.push_back(p * (1 / norm(p)));
+    asked.true_m.push_back(norm(p));
   }
-  return told;
+  asked.directions.insert(asked.directions.end(), split.gaps.begin(), split.gaps.end());
+  asked.true_m.resize(asked.directions.size(), std::numeric_limits<double>::quiet_NaN());
+  return asked;
 }
 
-void print_errors(const Method& method, const std::vector<double>& ranges,
-                  const std::vector<Vec3>& held_out, const std::vector<bool>& common,
-                  const RangeLimits& limits) {
-  Json line = method.header();
-  if (method.sampler) {
-    RayTally all(limits), shared(limits);
-    for (std::size_t i = 0; i < held_out.size(); ++i) {
-      all.add(ranges[i], norm(held_out[i]));
-      if (common[i]) shared.add(ranges[i], norm(held_out[i]));
-    }
-    line.update(to_json(all.errors()));
-    line.erase("no_surface");  // returns only tell where there is one
-    line["common"] = to_json(shared.errors().stats);
+/// Prints what a method tells, within the paper's limits and (`whole`) within none.
+void print_method(Json line, const std::vector<RangeEstimate>& told,
+                  const std::vector<RangeEstimate>& edge_aware, const Judge& limited,
+                  const Judge& whole) {
+  line.update(to_json(limited.errors(told)));
+  line["whole"] = to_json(whole.errors(told));
+  line["whole"]["equal"] = to_json(whole.equal_cut(told, edge_aware));
+  if (line["method"] == "compact") {
+    line["half"] = to_json(whole.most_trusted(told, kHalf));
+    line["confidence"] = to_json(whole.confidence(told));
+    line["trades"] = to_json(whole.trades(told));
   }
   print_line(line);
 }
 
-}  // namespace
-
-RingSplit split_rings(const Cloud& cloud, const Detection& detection, std::uint32_t every) {
-  RingSplit split;
-  const std::size_t rings = detection.sensor.rings.size();
-  const std::size_t last = (rings - 1) / every * every;
-  split.sensor = detection.sensor;
-  split.sensor.name = fmt::format("{}-every-{}", detection.sensor.name, every);
-  split.sensor.rings.clear();
-  for (std::size_t ring = 0; ring <= last; ring += every) {
-    split.sensor.rings.push_back(detection.sensor.rings[ring]);
-    split.elevations.push_back(detection.ring_elevations[ring]);
-  }
-  std::vector<std::uint32_t> coded;
-  for (std::uint32_t i = 0; i < cloud.size(); ++i) {
-    const std::uint16_t ring = detection.ring_of_point[i];
-    if (!is_return(cloud.positions[i]) || ring > last) continue;
-    if (ring % every == 0) {
-      coded.push_back(i);
-      split.ring_of_point.push_back(static_cast<std::uint16_t>(ring / every));
+/// The methods, edge-aware interpolation the last one, then the same calibrated.
+void print_methods(const std::vector<Method>& methods, const RingSplit& split,
+                   const RangeLimits& limits) {
+  const Asked asked = asked_of(split);
+  const Judge limited(asked.true_m, limits), whole(asked.true_m, {});
+  const std::vector<RangeEstimate> edge_aware = methods.back().sampler->tell(asked.directions);
+  for (const Method& method : methods) {
+    if (!method.sampler) {
+      print_line(method.header());
     } else {
-      split.held_out.push_back(cloud.positions[i]);
+      print_method(method.header(), method.sampler->tell(asked.directions), edge_aware, limited,
+                   whole);
     }
   }
-  split.coded = select(cloud, coded);
-  split.coded.attributes.clear();
-  return split;
+  print_method({{"method", "edge-aware-calibrated"}, {"setting", "raw samples"}},
+               calibrated(edge_aware, split.held_out, split.held_out_ring), edge_aware, limited,
+               whole);
 }
+
+}  // namespace
 
 Status held_out(const Arguments& arguments) {
   CURLIDAR_TRY_ASSIGN(every, arguments.number("every", 2, 2, 64));
@@ -121,7 +95,7 @@ Status held_out(const Arguments& arguments) {
     return {};
   }
   const RingSplit split = split_rings(scan.cloud, detection, every);
-  const EncodeSettings paper = for_every_nth(scan.settings, split.sensor, every);
+  const EncodeSettings paper = for_fewer_rings(scan.settings, split.sensor, every);
   CURLIDAR_TRY_ASSIGN(limits, limits_of(split.coded, paper));
   print_line({{"preset", scan.preset},
               {"sensor", detection.sensor.name},
@@ -130,6 +104,7 @@ Status held_out(const Arguments& arguments) {
               {"rings_coded", split.sensor.rings.size()},
               {"returns_coded", split.coded.size()},
               {"returns_held_out", split.held_out.size()},
+              {"gaps", split.gaps.size()},
               {"min_range_m", limits.min_m},
               {"max_range_m", limits.max_m}});
   const std::vector<Method> methods =
@@ -139,12 +114,7 @@ Status held_out(const Arguments& arguments) {
                     .ring_of_point = split.ring_of_point,
                     .ring_elevations = split.elevations,
                     .columns = split.sensor.columns});
-  std::vector<std::vector<double>> predictions;
-  for (const Method& method : methods) predictions.push_back(predict(method, split.held_out));
-  const std::vector<bool> common = told_by_all(predictions, split.held_out.size(), limits);
-  for (std::size_t i = 0; i < methods.size(); ++i) {
-    print_errors(methods[i], predictions[i], split.held_out, common, limits);
-  }
+  print_methods(methods, split, limits);
   return {};
 }
 

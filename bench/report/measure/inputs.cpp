@@ -2,6 +2,7 @@
 #include "report/measure/inputs.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -49,6 +50,22 @@ PaperSettings range_limits(PaperSettings settings, const Cloud& grid) {
     if (is_return(p)) settings.max_range.metres = std::max(settings.max_range.metres, norm(p));
   }
   return settings;
+}
+
+EncodeSettings for_fewer_rings(EncodeSettings settings, const SensorProfile& sensor, double times) {
+  settings.sensor = sensor;
+  settings.paper.row_rule = RowRule::rings;
+  settings.paper.columns = std::min(settings.paper.columns, sensor.columns);
+  CliffThresholds& cliffs = settings.paper.cliffs;
+  cliffs.row_m *= times;
+  cliffs.diagonal_m = std::hypot(cliffs.row_m, cliffs.column_m);
+  return settings;
+}
+
+Result<RangeLimits> limits_of(const Cloud& cloud, const EncodeSettings& settings) {
+  CURLIDAR_TRY_ASSIGN(grid, gridded(cloud, settings));
+  const PaperSettings limits = range_limits(settings.paper, grid);
+  return RangeLimits{limits.min_range_m, limits.max_range.metres};
 }
 
 Cloud in_range(const Cloud& scan, const PaperSettings& settings) {

@@ -6,6 +6,7 @@
 
 #include "curlidar/codec.hpp"
 #include "report/measure/arguments.hpp"
+#include "report/measure/judge.hpp"
 
 namespace curlidar::bench {
 
@@ -23,6 +24,13 @@ Result<Scan> read_scan(const Arguments& arguments);
 /// The settings as the profile starts from them.
 EncodeSettings of_profile(EncodeSettings settings, Profile profile);
 
+/// The paper's settings for a sensor with `times` fewer rings than those that they were made for.
+/// No more columns than the sensor has, or directions between them would see empty cells for
+/// cliffs. Rows spread evenly over the field of view are not where the rings of every sensor are,
+/// and fewer of them miss by more: rows are the rings. What is farther from the next row than a
+/// cliff allows must be allowed to be so by as much more.
+EncodeSettings for_fewer_rings(EncodeSettings settings, const SensorProfile& sensor, double times);
+
 /// The scan as the paper grids it: the cloud that its errors are measured against. Organised, NaN
 /// in empty cells.
 Result<Cloud> gridded(const Cloud& scan, EncodeSettings settings);
@@ -30,6 +38,9 @@ Result<Cloud> gridded(const Cloud& scan, EncodeSettings settings);
 /// The settings with the largest kept range in metres for the upper limit, as files hold
 /// them.
 PaperSettings range_limits(PaperSettings settings, const Cloud& grid);
+
+/// The limits that the paper's settings come to on the cloud.
+Result<RangeLimits> limits_of(const Cloud& cloud, const EncodeSettings& settings);
 
 /// The raw returns within the range limits of such settings.
 Cloud in_range(const Cloud& scan, const PaperSettings& settings);

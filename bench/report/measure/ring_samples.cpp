@@ -66,7 +66,7 @@ RingSamples::Seen RingSamples::see(std::size_t ring, double azimuth, Mixing mixi
           mix_ranges(left.range_m, right.range_m, weight, mixing)};
 }
 
-double RingSamples::range(const Vec3& direction, Mixing mixing) const {
+RingSamples::Mixed RingSamples::mix(const Vec3& direction, Mixing mixing) const {
   const double elevation = elevation_of(direction), azimuth = azimuth_of(direction);
   std::vector<Seen>::size_type low = 0, high = rings_.size();
   while (low < high) {  // the first ring below the direction
@@ -77,13 +77,16 @@ double RingSamples::range(const Vec3& direction, Mixing mixing) const {
       high = middle;
     }
   }
-  if (low == rings_.size()) return kNan;
+  if (low == rings_.size()) return {kNan, 0};
   const Seen bottom = see(low, azimuth, mixing);
-  if (bottom.elevation == elevation) return bottom.range_m;
-  if (low == 0) return kNan;
+  if (bottom.elevation == elevation) return {bottom.range_m, 1};
+  if (low == 0) return {kNan, 0};
   const Seen top = see(low - 1, azimuth, mixing);
   const double gap = top.elevation - bottom.elevation;
-  return mix_ranges(top.range_m, bottom.range_m, (top.elevation - elevation) / gap, mixing);
+  const double a = top.range_m, b = bottom.range_m;
+  const bool alone = std::isnan(a) || std::isnan(b);
+  return {mix_ranges(a, b, (top.elevation - elevation) / gap, mixing),
+          alone ? 0 : std::min(a, b) / std::max(a, b)};
 }
 
 }  // namespace curlidar::bench

@@ -29,8 +29,17 @@ class RingSamples {
   RingSamples(std::span<const Vec3> positions, std::span<const std::uint16_t> ring_of_point,
               std::vector<double> elevations, std::uint32_t columns);
 
-  /// Range along a direction, metres; NaN where there is none. O(log rings * log samples).
-  double range(const Vec3& direction, Mixing mixing) const;
+  /// What samples around a direction come to.
+  struct Mixed {
+    double range_m = 0;    ///< NaN where there is none
+    double agreement = 0;  ///< nearer over farther range of the two rings; 0 if one has no sample
+  };
+  /// O(log rings * log samples).
+  Mixed mix(const Vec3& direction, Mixing mixing) const;
+  /// The range alone, metres.
+  double range(const Vec3& direction, Mixing mixing) const {
+    return mix(direction, mixing).range_m;
+  }
 
   const std::vector<double>& elevations() const { return elevations_; }
   std::uint32_t columns() const { return columns_; }

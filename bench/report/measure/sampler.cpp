@@ -2,63 +2,24 @@
 #include "report/measure/sampler.hpp"
 
 #include <cmath>
-#include <limits>
-#include <span>
-#include <utility>
-
-#include "base/try.hpp"
-#include "curlidar/reconstruct.hpp"
+#include <cstddef>
 
 namespace curlidar::bench {
-namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-bool on_row(double index) {
-  return std::abs(index - std::round(index)) < 1e-9;
+std::vector<RangeEstimate> FieldSampler::tell(std::span<const Vec3> directions) const {
+  std::vector<RangeEstimate> told(directions.size());
+  field_->range_at(directions, told);
+  return told;
 }
 
-}  // namespace
-
-double FieldSampler::range(const Vec3& direction) const {
-  RangeEstimate estimate;
-  scan_.field->range_at(std::span(&direction, 1), std::span(&estimate, 1));
-  return estimate.valid() ? estimate.range_m : kNan;
-}
-
-Result<std::vector<RayRange>> FieldSampler::between_rows(double factor) const {
-  const Lattice& lattice = scan_.field->lattice();
-  const DenseGrid grid(lattice, factor, 1);
-  CURLIDAR_TRY_ASSIGN(cloud, reconstruct(scan_, {.rows = factor, .organised = true}));
-  std::vector<RayRange> rays;
-  for (std::size_t i = 0; i < grid.rows; ++i) {
-    const double row = grid.row(i);
-    if (on_row(row) || row < 0) continue;
-    for (std::size_t j = 0; j < grid.columns; ++j) {
-      const Vec3& p = cloud.positions[i * grid.columns + j];
-      if (is_return(p)) {
-        rays.push_back({p * (1 / norm(p)), norm(p)});
-      } else {
-        rays.push_back({lattice.direction(row, grid.column(j)), kNan});
-      }
-    }
+std::vector<RangeEstimate> RingSampler::tell(std::span<const Vec3> directions) const {
+  std::vector<RangeEstimate> told(directions.size());
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const RingSamples::Mixed mixed = samples_->mix(directions[i], mixing_);
+    if (std::isnan(mixed.range_m)) continue;
+    told[i] = {mixed.range_m, static_cast<float>(mixed.agreement), Seen::surface};
   }
-  return rays;
-}
-
-Result<std::vector<RayRange>> RingSampler::between_rows(double factor) const {
-  const Lattice lattice = Lattice::from_rings(samples_->elevations(), samples_->columns());
-  const DenseGrid grid(lattice, factor, 1);
-  std::vector<RayRange> rays;
-  for (std::size_t i = 0; i < grid.rows; ++i) {
-    const double row = grid.row(i);
-    if (on_row(row) || row < 0) continue;
-    for (std::size_t j = 0; j < grid.columns; ++j) {
-      const Vec3 direction = lattice.direction(row, grid.column(j));
-      rays.push_back({direction, range(direction)});
-    }
-  }
-  return rays;
+  return told;
 }
 
 }  // namespace curlidar::bench

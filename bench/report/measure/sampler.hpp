@@ -1,51 +1,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ranges between the coded rows, whatever tells them.
+// Ranges along any direction from the origin of a scan, whatever tells them.
 #pragma once
 
 #include <memory>
+#include <span>
+#include <utility>
 #include <vector>
 
-#include "curlidar/codec.hpp"
+#include "curlidar/field.hpp"
 #include "report/measure/ring_samples.hpp"
 
 namespace curlidar::bench {
 
-/// A unit direction with the range told there, metres; NaN: no point.
-struct RayRange {
-  Vec3 direction;
-  double range_m = 0;
-};
-
 class Sampler {
  public:
   virtual ~Sampler() = default;
-  /// Rows of one's own grid made `factor` times denser, those on a coded row left out.
-  virtual Result<std::vector<RayRange>> between_rows(double factor) const = 0;
-  /// Range along a unit direction, metres; NaN where there is no point.
-  virtual double range(const Vec3& direction) const = 0;
+  /// What is told along unit directions, one estimate for each. Confidences rank what a method
+  /// tells; only those of a field are meant as probabilities.
+  virtual std::vector<RangeEstimate> tell(std::span<const Vec3> directions) const = 0;
 };
 
-/// A decoded file: what `reconstruct` gives, and its field in any direction. Points see their own
-/// direction from the origin, which is not that of the lattice where beams start elsewhere.
+/// A decoded field; one thread.
 class FieldSampler final : public Sampler {
  public:
-  explicit FieldSampler(DecodedScan scan) : scan_(std::move(scan)) {}
+  explicit FieldSampler(std::shared_ptr<const Field> field) : field_(std::move(field)) {}
 
-  Result<std::vector<RayRange>> between_rows(double factor) const override;
-  double range(const Vec3& direction) const override;
+  std::vector<RangeEstimate> tell(std::span<const Vec3> directions) const override;
 
  private:
-  DecodedScan scan_;
+  std::shared_ptr<const Field> field_;
 };
 
-/// Interpolation of raw samples; its grid is that of the rings and columns.
+/// Interpolation of raw samples, trusted by how near the ranges on the ring above and below are to
+/// each other.
 class RingSampler final : public Sampler {
  public:
   RingSampler(std::shared_ptr<const RingSamples> samples, Mixing mixing)
       : samples_(std::move(samples)), mixing_(mixing) {}
 
-  Result<std::vector<RayRange>> between_rows(double factor) const override;
-  double range(const Vec3& direction) const override { return samples_->range(direction, mixing_); }
+  std::vector<RangeEstimate> tell(std::span<const Vec3> directions) const override;
 
  private:
   std::shared_ptr<const RingSamples> samples_;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Simulated scans and what points between their rows are worth.
+// Simulated scans, and directions between their rings with the exact ranges there.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,10 +25,14 @@ struct Simulated {
 Result<Simulated> simulate_scan(const std::string& scene, const std::string& sensor,
                                 const std::string& preset, std::uint64_t seed);
 
-/// The limits that the paper's settings come to on the cloud.
-Result<RangeLimits> limits_of(const Cloud& cloud, const EncodeSettings& settings);
+/// What methods start from on a simulated scan.
+MethodInput input_of(const Simulated& simulated);
 
-/// Each ray against the surface that it meets.
-RayErrors judge(const Scene& scene, const std::vector<RayRange>& rays, const RangeLimits& limits);
+/// Directions of `factor` times the rings, those on a ring left out: about `most` of them, spread
+/// evenly. They are on the sensor's columns and between the outermost rings.
+std::vector<Vec3> rays_between(const Detection& rings, double factor, std::size_t most);
+
+/// The range of the surface that each ray from the origin meets; NaN where it meets none.
+std::vector<double> true_ranges(const Scene& scene, std::span<const Vec3> directions);
 
 }  // namespace curlidar::bench

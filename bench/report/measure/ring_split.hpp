@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scan without some of its rings, and their returns.
+// A scan without some of its rings, and what these saw.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "curlidar/cloud.hpp"
+#include "curlidar/field.hpp"
 #include "curlidar/sensor.hpp"
 
 namespace curlidar::bench {
@@ -16,10 +18,20 @@ struct RingSplit {
   SensorProfile sensor;                      ///< with these rings only
   std::vector<double> elevations;            ///< of these rings as the scan shows them, radians
   std::vector<Vec3> held_out;                ///< returns of the rings between them
+  std::vector<std::uint16_t> held_out_ring;  ///< their rings in the whole sensor
+  /// Unit directions in which those rings had no return between two others.
+  std::vector<Vec3> gaps;
 };
 
 /// Keeps every `every`-th ring. Rings below the last kept one lie between nothing and are in
 /// neither part. The detection must be that of the cloud.
 RingSplit split_rings(const Cloud& cloud, const Detection& detection, std::uint32_t every);
+
+/// Estimates with the median error of their ring added, each fitted on the sectors of the turn (10
+/// degrees) on either side of its own: what a calibration of the held-out rings would bring.
+/// `returns` and `rings` are of the held-out returns, `told` may go on after them.
+std::vector<RangeEstimate> calibrated(std::vector<RangeEstimate> told,
+                                      std::span<const Vec3> returns,
+                                      std::span<const std::uint16_t> rings);
 
 }  // namespace curlidar::bench

@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The report's section on what is told between the samples: tables, goals, confidence."""
+import unittest
+
+from report_support import KITTI, OTHER, ROOM, FakeContext, by
+from frame.cells import Missing
+from sections import continuous, continuous_confidence, continuous_goals
+
+LIMITS = {"min_range_m": 5., "max_range_m": 20.}
+FIGURES = {"points": 9, "mean": .1, "rms": .2, "p50": .05, "p95": .3, "max": 1.,
+           "within_5cm": .5, "completeness": .9, "no_surface": 1}
+EQUAL = {"completeness": .8, "p50": .02, "p95": .28, "other_p50": .03, "other_p95": .3}
+TRADES = [{"min_confidence": each, "completeness": .9 - each / 2, "p50": .05, "p95": .3,
+           "within_5cm": .5} for each in (0, .5, .9)]
+CONFIDENCE = [{"count": 1000 * i, "told": .05 + i / 10, "observed": .04 + i / 10}
+              for i in range(10)]
+METHODS = [("baseline", "degree 64"), ("paper", "S 1x1"), ("paper", "S 2x1"), ("paper", "S 2x2"),
+           ("compact", "1 bit a point"), ("compact-field", "1 bit a point"),
+           ("linear", "raw samples"), ("edge-aware", "raw samples"),
+           ("edge-aware-calibrated", "raw samples")]
+
+
+def told(method, setting, **more):
+    line = {"method": method, "setting": setting, **FIGURES, "whole": {**FIGURES, "equal": EQUAL}}
+    if method == "compact":
+        line.update(bits_per_point=1., confidence=CONFIDENCE, trades=TRADES,
+                    half={**TRADES[0], "completeness": .5})
+    return {**line, **more}
+
+
+def lines_of(key):
+    """What the programs print."""
+    if key["part"] == "truth":
+        return [{"returns": 9, **LIMITS}, *(told(*each, factor=float(factor))
+                                            for each in METHODS[:-1] for factor in (2, 4, 8))]
+    if key["input"] == OTHER.name:
+        return [{"skipped": "the rings of the scan cannot be told"}]
+    return [{"preset": "outdoor", "rings": 64, "rings_coded": 32, "returns_coded": 90,
+             "returns_held_out": 80, **LIMITS}, *(told(*each) for each in METHODS[1:])]
+
+
+class ContinuousTest(unittest.TestCase):
+    def tables(self, answer=lines_of, **options):
+        return {table.id: table for table in continuous.tables(FakeContext(answer, **options))}
+
+    def test_tables_of_truth_and_of_rings_held_out(self):
+        tables = self.tables()
+        truth = tables["continuous-truth-room-os1-64-gen1"]
+        self.assertEqual(len(truth.rows), 3 * (len(METHODS) - 1))
+        self.assertIn("continuous-truth-room-vlp16", tables)
+        held_out = tables["continuous-held-out-kitti_raw-a"]
+        self.assertEqual([row["every"] for row in held_out.rows if row["method"] == "curlidar"],
+                         [2, 4])
+        self.assertEqual(list(continuous.check(None, tables.values())), [])
+
+    def test_scans_without_rings_are_listed_with_the_reason(self):
+        tables = self.tables(scans=[OTHER])
+        self.assertEqual({row["why"] for row in tables["continuous-left-out"].rows},
+                         {"the rings of the scan cannot be told"})
+        self.assertNotIn("continuous-held-out-velodyne-b", tables)
+        self.assertNotIn("continuous-goals-held-out", tables)
+
+    def test_our_runs_of_the_papers_method_stand_beside_its_own(self):
+        table = self.tables()["continuous-published"]
+        row = by(table, dataset="INDOOR", method="paper S=2x1")
+        self.assertEqual((row["mean_2_m"].value, row["ours_2"]), (.0042, .1))
+        self.assertEqual(by(table, dataset="INDOOR", method="baseline")["ours_8"], .1)
+        self.assertIsInstance(by(table, dataset="Newer College", method="paper S=2x1")["ours_2"],
+                              Missing)
+
+    def test_quick_runs_measure_less(self):
+        context = FakeContext(lines_of, quick=True)
+        continuous.measure(context)
+        self.assertEqual(len(context.asked), 2 + 2)
+        self.assertIn("2,8", context.asked[0])
+        self.assertNotIn("--baseline", context.asked[0])
+
+    def test_scenes_are_not_those_that_anything_was_trained_on(self):
+        context = FakeContext(lines_of)
+        continuous.measure(context)
+        for command in context.asked[:3]:
+            self.assertEqual(command[command.index("--seed") + 1], str(continuous.SEED))
+
+    def test_a_measurement_that_failed_has_its_row(self):
+        tables = self.tables(lambda _key: [{"failure": "it ended with 1"}])
+        self.assertEqual(tables["continuous-truth-room-os1-64-gen1"].rows[0]["mean"],
+                         Missing("it ended with 1"))
+        self.assertIsInstance(tables["continuous-goals-truth"].rows[0]["p50"], Missing)
+
+    def test_check_finds_methods_that_are_missing(self):
+        tables = self.tables()
+        table = tables["continuous-held-out-kitti_raw-a"]
+        table.rows = [row for row in table.rows if row["method"] != "curlidar"]
+        self.assertEqual(len(list(continuous.check(None, [table]))), 1)
+
+
+class GoalsTest(unittest.TestCase):
+    def test_what_is_missed_is_told_with_its_size(self):
+        table = continuous_goals.held_out({(KITTI.name, 2): lines_of({"part": "held out",
+                                                                      "input": KITTI.name})[1:]})
+        row = by(table, every=2)
+        self.assertEqual(row["median_met"], "yes")
+        self.assertEqual(row["p95_met"], "no, 4 % over")  # .28 of .9 * .3
+        self.assertEqual((row["edge_p50"], row["equal_edge_p50"]), (.05, .03))
+        self.assertEqual(row["half_p50"], .05)
+
+    def test_against_truth_the_p95_itself_is_wanted(self):
+        lines = lines_of({"part": "truth"})[1:]
+        row = by(continuous_goals.truth({("room", "vlp16"): lines}), factor=4.)
+        self.assertEqual(row["p95_met"], "yes")
+
+    def test_half_that_is_not_told_has_no_figures(self):
+        lines = lines_of({"part": "held out", "input": KITTI.name})[1:]
+        lines[3]["half"]["completeness"] = .4
+        row = by(continuous_goals.held_out({(KITTI.name, 2): lines}), every=2)
+        self.assertEqual(row["half_p95"], Missing("40 % are told"))
+        lines[3]["half"]["completeness"] = .5
+
+
+class ConfidenceTest(unittest.TestCase):
+    def tables(self):
+        lines = lines_of({"part": "truth"})[1:]
+        return continuous_confidence.tables({("room", "vlp16"): lines}, {})
+
+    def test_bins_are_pooled(self):
+        table = self.tables()[0]
+        self.assertEqual(len(table.rows), 9)  # the first bin is empty
+        row = by(table, bin="0.3 .. 0.4")
+        self.assertEqual(row["count"], 3 * 3000)
+        self.assertAlmostEqual(row["off"], .01)
+        self.assertEqual(row["met"], "yes")
+
+    def test_check_finds_bins_and_trades_that_do_not_ascend(self):
+        tables = self.tables()
+        self.assertEqual(list(continuous_confidence.check(tables)), [])
+        tables[0].rows.reverse()
+        tables[1].rows[1]["completeness"] = 1.
+        self.assertEqual(len(list(continuous_confidence.check(tables))), 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
