@@ -61,6 +61,7 @@ class Booster {
       add_leaves();
     }
     round_leaves();
+    forget_unasked();
     return trees_;
   }
 
@@ -195,6 +196,15 @@ class Booster {
     while (largest / trees_.unit > kLeafSpan) trees_.unit *= 2;
     for (const double leaf : leaves_) {
       trees_.leaves.push_back(static_cast<std::int16_t>(std::lround(leaf / trees_.unit)));
+    }
+  }
+
+  /// Features that no tree asks for need no cuts.
+  void forget_unasked() {
+    std::vector<bool> asked(trees_.cuts.size(), false);
+    for (const ObliviousTrees::Split& split : trees_.splits) asked[split.feature] = true;
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      if (!asked[i]) trees_.cuts[i].clear();
     }
   }
 

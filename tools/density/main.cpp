@@ -13,6 +13,9 @@
 
 #include "base/try.hpp"
 #include "curlidar/io.hpp"
+#include "curlidar/simulate.hpp"
+#include "density/asked_scan.hpp"
+#include "density/confidence.hpp"
 #include "density/fit.hpp"
 
 namespace {
@@ -21,14 +24,17 @@ using namespace curlidar;
 using namespace curlidar::density;
 
 struct Options {
-  std::string kind, list, out, without, name = "density", description;
+  std::string kind, list, out, without, cache, name = "density", description;
   TreeSettings trees;
-  std::size_t threads = 1;
+  std::size_t confidence_trees = 80, places = 2000, seeds = 2, threads = 1;
 };
 
 constexpr const char* kUsage =
-    "usage: density image LIST OUT.toml [--without GROUP] [--name N] [--description D]\n"
-    "               [--return-trees N] [--residual-trees N] [--sample K] [--threads N]\n"
+    "usage: density image LIST OUT.toml [--return-trees N] [--residual-trees N] [--depth N]\n"
+    "               [--residual-depth N] [--sample K]\n"
+    "       density confidence LIST OUT.toml [--confidence-trees N] [--depth N] [--places N]\n"
+    "               [--seeds N] [--cache FOLDER]\n"
+    "both: [--without GROUP] [--name N] [--description D] [--threads N]\n"
     "LIST holds lines of GROUP PATH, a group being a drive.\n";
 
 Result<std::size_t> whole(const std::string& text) {
@@ -40,27 +46,29 @@ Result<std::size_t> whole(const std::string& text) {
 
 Result<Options> parse(const std::vector<std::string>& words) {
   Options options;
-  if (words.size() < 3 || words[0] != "image") {
+  if (words.size() < 3 || words.size() % 2 == 0) {
     return Error{ErrorCode::invalid_argument, kUsage};
   }
   options.kind = words[0], options.list = words[1], options.out = words[2];
+  const std::map<std::string, std::string*> texts{{"--without", &options.without},
+                                                  {"--cache", &options.cache},
+                                                  {"--name", &options.name},
+                                                  {"--description", &options.description}};
+  const std::map<std::string, std::size_t*> numbers{
+      {"--return-trees", &options.trees.return_trees},
+      {"--residual-trees", &options.trees.residual_trees},
+      {"--depth", &options.trees.depth},
+      {"--residual-depth", &options.trees.residual_depth},
+      {"--sample", &options.trees.every},
+      {"--confidence-trees", &options.confidence_trees},
+      {"--places", &options.places},
+      {"--seeds", &options.seeds},
+      {"--threads", &options.threads}};
   for (std::size_t i = 3; i < words.size(); i += 2) {
-    if (i + 1 >= words.size()) return Error{ErrorCode::invalid_argument, kUsage};
-    const std::string& value = words[i + 1];
-    const std::map<std::string, std::string*> texts{{"--without", &options.without},
-                                                    {"--name", &options.name},
-                                                    {"--description", &options.description}};
-    const std::map<std::string, std::size_t*> numbers{
-        {"--return-trees", &options.trees.return_trees},
-        {"--residual-trees", &options.trees.residual_trees},
-        {"--depth", &options.trees.depth},
-        {"--residual-depth", &options.trees.residual_depth},
-        {"--sample", &options.trees.every},
-        {"--threads", &options.threads}};
     if (const auto text = texts.find(words[i]); text != texts.end()) {
-      *text->second = value;
+      *text->second = words[i + 1];
     } else if (const auto number = numbers.find(words[i]); number != numbers.end()) {
-      CURLIDAR_TRY_ASSIGN(read, whole(value));
+      CURLIDAR_TRY_ASSIGN(read, whole(words[i + 1]));
       *number->second = read;
     } else {
       return Error{ErrorCode::invalid_argument, kUsage};
@@ -81,30 +89,100 @@ Result<std::vector<std::pair<std::string, std::string>>> read_list(const std::st
   return list;
 }
 
-Status run(const Options& options) {
+Status write_profile(const Options& options, DensityProfile profile) {
+  profile.name = options.name;
+  profile.description = options.description;
+  CURLIDAR_TRY(validate(profile));
+  const std::string text = density_profile_text(profile);
+  std::ofstream file(options.out, std::ios::binary);
+  file << text;
+  if (!file.flush()) return Error{ErrorCode::io, fmt::format("{}: not written", options.out)};
+  fmt::print("{}: {} bytes\n", options.out, text.size());
+  return {};
+}
+
+Status run_image(const Options& options) {
   CURLIDAR_TRY_ASSIGN(list, read_list(options.list));
   std::vector<RowScan> scans;
   for (const auto& [group, path] : list) {
     if (group == options.without) continue;
     CURLIDAR_TRY_ASSIGN(own, read_own_frame(path));
     scans.push_back(image_rows(own));
-    scans.back().group = group;
   }
   if (scans.empty()) return Error{ErrorCode::invalid_argument, "no scan is left to learn from"};
   // Rows 0, 4, .. 60 from below of 64.
   DensityProfile profile = fit_tables(scans, {.first = 3, .every = 4});
-  profile.name = options.name;
-  profile.description = options.description;
   if (options.trees.return_trees > 0 || options.trees.residual_trees > 0) {
     fit_trees(scans, options.trees, profile, options.threads);
   }
-  CURLIDAR_TRY(validate(profile));
-  const std::string text = density_profile_text(profile);
-  std::ofstream file(options.out, std::ios::binary);
-  file << text;
-  if (!file.flush()) return Error{ErrorCode::io, fmt::format("{}: not written", options.out)};
-  fmt::print("{}: {} bytes from {} scans\n", options.out, text.size(), scans.size());
-  return {};
+  return write_profile(options, std::move(profile));
+}
+
+void show(const char* what, const Calibration& calibration) {
+  fmt::print("{}: bins of said / right / share of answers", what);
+  double all = 0;
+  for (const double count : calibration.count) all += count;
+  for (std::size_t bin = 0; bin < Calibration::kBins; ++bin) {
+    const double count = std::max(calibration.count[bin], 1.0);
+    fmt::print("  {:.3f}/{:.3f}/{:.3f}", calibration.said[bin] / count,
+               calibration.right[bin] / count, calibration.count[bin] / std::max(all, 1.0));
+  }
+  fmt::print("  worst {:.3f}\n", calibration.worst(0.01 * all));
+}
+
+/// From a few centimetres of error to what a bit a point leaves.
+constexpr double kSteps_m[] = {0.03, 0.1, 0.3};
+
+/// Answers of all scenes and sensors of one seed. What cannot be coded is left out, with a word.
+void add_simulated(const Options& options, std::uint64_t seed, Samples& samples) {
+  const Coder coder(options.cache);
+  for (const std::string& scene : scene_names()) {
+    for (const char* sensor : {"hdl64e-kitti", "os1-64", "vlp16"}) {
+      for (const double step_m : kSteps_m) {
+        const auto scan = ask_simulated(coder, {scene, sensor, seed}, step_m, options.places);
+        if (!scan) fmt::print(stderr, "{} {}: {}\n", scene, sensor, scan.error().message);
+        if (scan) add_answers(*scan, samples);
+      }
+    }
+  }
+}
+
+void add_real(const Options& options, const std::string& path, Samples& samples) {
+  const Coder coder(options.cache);
+  for (const std::size_t every : {std::size_t{2}, std::size_t{4}}) {
+    for (const double step_m : kSteps_m) {
+      const auto scan = ask_held_out(coder, path, every, step_m, options.places);
+      if (!scan) fmt::print(stderr, "{}\n", scan.error().message);
+      if (scan) add_answers(*scan, samples);
+    }
+  }
+}
+
+Status run_confidence(const Options& options) {
+  constexpr std::uint64_t kOtherSeed = 101;
+  CURLIDAR_TRY_ASSIGN(list, read_list(options.list));
+  Samples samples, simulated, real;
+  for (std::uint64_t seed = 1; seed <= options.seeds; ++seed) {
+    add_simulated(options, seed, samples);
+  }
+  add_simulated(options, kOtherSeed, simulated);
+  for (const auto& [group, path] : list) {
+    add_real(options, path, group == options.without ? real : samples);
+  }
+  if (samples.size() == 0) return Error{ErrorCode::invalid_argument, "no scan could be coded"};
+  DensityProfile profile;
+  profile.confidence = boost(
+      samples, {.trees = options.confidence_trees, .depth = options.trees.depth}, options.threads);
+  show("learnt from", check(profile.confidence, samples));
+  show("another seed", check(profile.confidence, simulated));
+  if (real.size() > 0) show("another drive", check(profile.confidence, real));
+  return write_profile(options, std::move(profile));
+}
+
+Status run(const Options& options) {
+  if (options.kind == "image") return run_image(options);
+  if (options.kind == "confidence") return run_confidence(options);
+  return Error{ErrorCode::invalid_argument, kUsage};
 }
 
 }  // namespace
