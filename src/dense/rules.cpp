@@ -190,7 +190,8 @@ double doubt_of(const RingPoints& points, const Look& look, const Guess& guess) 
   }
 }
 
-/// Beyond the outermost rings: theirs, continued half a step.
+/// Beyond the outermost rings: theirs, continued half a step. What lies above the top ring mostly
+/// stands upright, and planes through two rings end in the far: it keeps its distance.
 Guess beyond_edge(const RingPoints& points, const Look& look) {
   const bool top = look.above.ring < 0;
   const RingLook& edge = top ? look.below : look.above;
@@ -202,7 +203,7 @@ Guess beyond_edge(const RingPoints& points, const Look& look) {
                       : top     ? elevations[0] - elevations[1]
                                 : elevations[rings - 2] - elevations[rings - 1];
   Guess guess{top ? DenseMode::only_below : DenseMode::only_above, edge.r, top ? 0.0 : 1.0};
-  if (make_plane(inner, edge)) {
+  if (!top && make_plane(inner, edge)) {
     const double there = met(look.line.inverse_to(inner.place, edge.place));
     if (there > edge.r / 2 && there < 2 * edge.r) guess.r = there;
   }
