@@ -5,7 +5,8 @@ import unittest
 
 from report_support import KITTI, OTHER, ROOM, FakeContext, by
 from frame.cells import Missing
-from sections import continuous, continuous_confidence, continuous_goals
+from sections import (continuous, continuous_borders, continuous_confidence,
+                      continuous_goals)
 
 LIMITS = {"min_range_m": 5., "max_range_m": 20.}
 FIGURES = {"points": 9, "mean": .1, "rms": .2, "p50": .05, "p95": .3, "max": 1.,
@@ -15,6 +16,8 @@ TRADES = [{"min_confidence": each, "completeness": .9 - each / 2, "p50": .05, "p
            "within_5cm": .5} for each in (0, .5, .9)]
 CONFIDENCE = [{"count": 1000 * i, "told": .05 + i / 10, "observed": .04 + i / 10}
               for i in range(10)]
+JUMPS = {"pairs": 90, "nothing": 10, "one_surface": 60, "mean_m": .02, "mean_of_step": .2,
+         "p95_m": .1, "max_m": .5, "no_jump": 70, "untrue": 0, "untrue_share": 0.}
 METHODS = [("baseline", "degree 64"), ("paper", "S 1x1"), ("paper", "S 2x1"), ("paper", "S 2x2"),
            ("compact", "1 bit a point"), ("compact-field", "1 bit a point"),
            ("linear", "raw samples"), ("edge-aware", "raw samples"),
@@ -31,6 +34,9 @@ def told(method, setting, **more):
 
 def lines_of(key):
     """What the programs print."""
+    if key["part"] == "borders":
+        return [{"method": method, "step_m": .1, "borders": JUMPS, "insides": JUMPS}
+                for method in continuous_borders.METHODS]
     if key["part"] == "truth":
         return [{"returns": 9, **LIMITS}, *(told(*each, factor=float(factor))
                                             for each in METHODS[:-1] for factor in (2, 4, 8))]
@@ -72,7 +78,7 @@ class ContinuousTest(unittest.TestCase):
     def test_quick_runs_measure_less(self):
         context = FakeContext(lines_of, quick=True)
         continuous.measure(context)
-        self.assertEqual(len(context.asked), 2 + 2)
+        self.assertEqual(len(context.asked), 2 + 2 + 1 + 2)  # K = 2 asked again
         self.assertIn("2,8", context.asked[0])
         self.assertNotIn("--baseline", context.asked[0])
 
@@ -137,6 +143,22 @@ class ConfidenceTest(unittest.TestCase):
         tables[0].rows.reverse()
         tables[1].rows[1]["completeness"] = 1.
         self.assertEqual(len(list(continuous_confidence.check(tables))), 2)
+
+
+class BordersTest(unittest.TestCase):
+    def test_what_is_not_as_wanted_is_told(self):
+        jumps = {**JUMPS, "mean_of_step": .3, "untrue": 7, "untrue_share": .1}
+        line = {"method": "paper", "step_m": .1, "borders": jumps, "insides": JUMPS}
+        table = continuous_borders.table({"room": [line]})
+        self.assertEqual([row["met"] for row in table.rows],
+                         ["no: mean 0.30 D, 7 untrue", "yes"])
+        self.assertEqual(len(list(continuous_borders.check([table]))), 1)  # ours is not there
+
+    def test_check_finds_parts_beyond_the_whole(self):
+        lines = [{"method": method, "step_m": .1, "borders": {**JUMPS, "untrue": 71},
+                  "insides": JUMPS} for method in continuous_borders.METHODS]
+        table = continuous_borders.table({"room": lines})
+        self.assertEqual(len(list(continuous_borders.check([table]))), 3)
 
 
 if __name__ == "__main__":

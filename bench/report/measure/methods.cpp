@@ -42,6 +42,11 @@ Method coded_method(std::string name, std::string setting, const Cloud& cloud,
   return method;
 }
 
+std::shared_ptr<const RingSamples> samples_of(const MethodInput& input) {
+  return std::make_shared<const RingSamples>(input.cloud->positions, input.ring_of_point,
+                                             input.ring_elevations, input.columns);
+}
+
 Method sample_method(std::string name, const std::shared_ptr<const RingSamples>& samples,
                      Mixing mixing) {
   Method method;
@@ -94,11 +99,14 @@ std::vector<Method> compact_methods(const MethodInput& input) {
   return {std::move(dense), std::move(field)};
 }
 
+Method edge_aware_method(const MethodInput& input) {
+  return sample_method("edge-aware", samples_of(input), Mixing::edge_aware);
+}
+
 std::vector<Method> make_methods(const MethodInput& input) {
   std::vector<Method> methods = paper_methods(*input.cloud, input.paper);
   for (Method& method : compact_methods(input)) methods.push_back(std::move(method));
-  const auto samples = std::make_shared<const RingSamples>(
-      input.cloud->positions, input.ring_of_point, input.ring_elevations, input.columns);
+  const auto samples = samples_of(input);
   methods.push_back(sample_method("linear", samples, Mixing::linear));
   methods.push_back(sample_method("edge-aware", samples, Mixing::edge_aware));
   return methods;

@@ -46,6 +46,8 @@ Method baseline_method(const Cloud& cloud, EncodeSettings settings);
 /// The compact codec at 1 bit a point with every return: what is told between its samples, and
 /// what its field says by itself.
 std::vector<Method> compact_methods(const MethodInput& input);
+/// Edge-aware interpolation of the raw samples.
+Method edge_aware_method(const MethodInput& input);
 /// The paper's; compact; linear and edge-aware interpolation.
 std::vector<Method> make_methods(const MethodInput& input);
 

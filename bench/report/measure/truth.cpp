@@ -49,6 +49,13 @@ void print_factor(const std::vector<Method>& methods, const Simulated& simulated
   }
 }
 
+/// The sensor as it is simulated: all beams leave from the origin.
+SensorProfile from_origin(SensorProfile sensor) {
+  sensor.beam_origin_radius_m = 0;
+  for (Ring& ring : sensor.rings) ring.vertical_offset_m = ring.horizontal_offset_m = 0;
+  return sensor;
+}
+
 }  // namespace
 
 Result<Simulated> simulate_scan(const std::string& scene, const std::string& sensor,
@@ -56,7 +63,8 @@ Result<Simulated> simulate_scan(const std::string& scene, const std::string& sen
   Simulated simulated;
   CURLIDAR_TRY_ASSIGN(world, make_scene(scene, seed));
   simulated.scene = std::move(world);
-  CURLIDAR_TRY_ASSIGN(profile, builtin_sensor(sensor));
+  CURLIDAR_TRY_ASSIGN(builtin, builtin_sensor(sensor));
+  const SensorProfile profile = from_origin(std::move(builtin));
   CURLIDAR_TRY_ASSIGN(paper, paper_preset(preset));
   CURLIDAR_TRY_ASSIGN(cloud, simulate(*simulated.scene, profile, {.seed = seed}));
   CURLIDAR_TRY_ASSIGN(rings, assign_rings(cloud, profile));
@@ -75,7 +83,7 @@ Result<Simulated> simulate_scan(const std::string& scene, const std::string& sen
 MethodInput input_of(const Simulated& simulated) {
   return {.cloud = &simulated.cloud,
           .paper = simulated.settings,
-          .compact_sensor = {},  // simulated beams start at the origin, those of profiles may not
+          .compact_sensor = {},  // it finds its own
           .ring_of_point = simulated.rings.ring_of_point,
           .ring_elevations = simulated.rings.ring_elevations,
           .columns = simulated.settings.sensor->columns};

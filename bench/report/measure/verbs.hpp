@@ -13,6 +13,13 @@ Status one_to_one(const Arguments& arguments);
 Status truth(const Arguments& arguments);
 // held_out.cpp: between the coded rings of a scan, against the rings that were left out.
 Status held_out(const Arguments& arguments);
+// borders.cpp: jumps at the borders of patches, of a scan and of a simulated one.
+Status borders(const Arguments& arguments);
+Status borders_truth(const Arguments& arguments);
+// range_images.cpp: what is told between the rings as range images, of a scan of which every K-th
+// ring is coded and of a simulated one.
+Status range_images(const Arguments& arguments);
+Status range_images_truth(const Arguments& arguments);
 // timing.cpp: CPU time of the codecs, and of the stages of the paper's.
 Status timing(const Arguments& arguments);
 // upsampling.cpp: 16 rows to 64 by TULIP's protocol.

@@ -4,11 +4,12 @@ from dataclasses import replace
 
 from frame.cells import Missing
 from frame.tables import Column, Figure, Table
-from sections import continuous_confidence, continuous_goals
+from sections import continuous_borders, continuous_confidence, continuous_goals
 from sections.one_to_one import explain, plain_numbers, short, table_id, taken_as
 
 TITLE = "Continuous reconstruction"
-TABLES = ("continuous-goals-truth", "continuous-confidence", "continuous-published")
+TABLES = ("continuous-goals-truth", "continuous-confidence", "continuous-trade",
+          "continuous-borders", "continuous-published")
 FACTORS, QUICK_FACTORS = (2, 4, 8), (2, 8)
 HELD_OUT = (2, 4)  # every K-th ring coded
 NO_FILE = Missing("raw samples, no file")
@@ -36,7 +37,7 @@ def factors_of(context):
 def scenes_of(context):
     """Every scene with its own sensor first; in full mode with the others too, in quick mode the
     first one with the sparsest."""
-    scenes = [replace(scene, seed=SEED) for scene in context.scenes]
+    scenes = [own(scene) for scene in context.scenes]
     more = [(scene, sensor) for scene in scenes for sensor in SENSORS if sensor != scene.sensor]
     if context.quick:
         more = [(scene, SENSORS[-1]) for scene in scenes[:1]]
@@ -49,6 +50,13 @@ def measure(context):
     for scan in context.scans:
         for every in HELD_OUT:
             held_out_of(context, scan, every)
+    borders_of(context)
+
+
+def borders_of(context):
+    """Scenes with their own sensors, and the real scans whose rings are known."""
+    scans = [scan for scan in context.scans if not left_out(held_out_of(context, scan, 2))]
+    return continuous_borders.lines_of(context, [own(each) for each in context.scenes], scans)
 
 
 def truth_lines(context):
@@ -192,6 +200,7 @@ def published(context):
 
 
 def own(scene):
+    """The scene as no profile has seen it."""
     return replace(scene, seed=SEED)
 
 
@@ -221,6 +230,7 @@ def tables(context):
             [Column("input", "scan"), Column("every", "K"), Column("why", "why not")], reasons))
     goals = [*continuous_goals.tables(truth_lines(context), held_out_lines(context)),
              *continuous_confidence.tables(truth_lines(context), held_out_lines(context))]
+    goals.append(continuous_borders.table(borders_of(context)))
     return [*goals, *found, published(context)]
 
 
@@ -296,6 +306,7 @@ def check(_context, found):
     """A median is no more than the p95, every table has every method, confidences are told in
     ascending bins."""
     yield from continuous_confidence.check(found)
+    yield from continuous_borders.check(found)
     for table in found:
         if not table.id.startswith(("continuous-truth", "continuous-held-out")):
             continue
