@@ -51,6 +51,14 @@ def measure(context):
         for every in HELD_OUT:
             held_out_of(context, scan, every)
     borders_of(context)
+    from sections import continuous_pictures
+    continuous_pictures.measure(context, drawn_items(context))
+
+
+def drawn_items(context):
+    """What pictures show: the first real scan whose rings are known and the first scenes."""
+    scans = [scan for scan in context.scans if not left_out(held_out_of(context, scan, 2))]
+    return scans[:1] + [own(scene) for scene in context.scenes[:1 if context.quick else 3]]
 
 
 def borders_of(context):
@@ -263,8 +271,9 @@ def figures(context):
             found.append(Figure(name, title, caption + " Two panels a scan: the p95, and "
                                 "the share of the directions that got a point.", "svg",
                                 f"data/{name}.csv"))
-    return found + continuous_confidence.figures(context, truth_lines(context),
-                                                  held_out_lines(context))
+    from sections import continuous_pictures
+    found += continuous_confidence.figures(context, truth_lines(context), held_out_lines(context))
+    return found + continuous_pictures.figures(context, drawn_items(context))
 
 
 def draw(context, name, label):
