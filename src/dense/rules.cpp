@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <tuple>
 
 namespace curlidar {
 namespace {
@@ -22,6 +24,8 @@ constexpr double kFarthest_m = 400;
 constexpr double kGroundSlope = 0.15, kGroundNoise_m = 0.05, kGroundBelow_m = 0.5;
 /// A ground that ends behind something is seen up to it, give or take.
 constexpr double kFoot = 1.02;
+/// Upright: out by less than this for each metre up. The ground's plane passes so far behind.
+constexpr double kUpright = 0.25, kFootBehind = 0.03;
 /// Samples look alike in a vote within this.
 constexpr double kAlikeShare = 0.06, kAlike_m = 0.2;
 constexpr int kVoters = 6;
@@ -96,6 +100,24 @@ Guess jump(const RingPoints& points, const Look& look) {
   return vote(points, look);
 }
 
+/// Where upright things meet the ground below them two planes are seen, not one between them.
+std::optional<Guess> foot(const Look& look) {
+  if (!on_ground(look.line, look.below2, look.below)) return std::nullopt;
+  if (!make_plane(look.above2, look.above)) return std::nullopt;
+  const double out = look.above2.place.rho - look.above.place.rho;
+  const double up = look.above2.place.z - look.above.place.z;
+  if (std::abs(out) > kUpright * up) return std::nullopt;
+  const auto& [below2, below, above2, above] =
+      std::tie(look.below2, look.below, look.above2, look.above);
+  const double behind = towards(look.line, above).inverse_to(below2.place, below.place) * above.r;
+  if (behind > 1 - kFootBehind) return std::nullopt;  // the ground is not clearly behind
+  const double ground = met(look.line.inverse_to(below2.place, below.place));
+  const double thing = met(look.line.inverse_to(above.place, above2.place));
+  if (!(thing > 0) || thing > kFoot * std::max(above.r, below.r)) return std::nullopt;
+  if (ground > 0 && ground < thing) return Guess{DenseMode::planar, ground, 0};
+  return Guess{DenseMode::planar, thing, 1};
+}
+
 bool one_surface(const Look& look) {
   const double a = look.above.r, b = look.below.r;
   return std::abs(a - b) < kSame * std::min(a, b);
@@ -131,6 +153,7 @@ Guess between_rings(const RingPoints& points, const Look& look) {
   if (!look.above.known && !look.below.known) return {};
   if (!look.above.known || !look.below.known) return alone(look);
   const double chord = met(look.line.inverse_to(look.below.place, look.above.place));
+  if (const std::optional<Guess> corner = foot(look)) return *corner;
   if (chord > 0 && one_surface(look)) return {DenseMode::smooth, chord, look.share};
   if (chord > 0 && one_plane(look)) return {DenseMode::planar, chord, look.share};
   return jump(points, look);
@@ -190,8 +213,9 @@ double doubt_of(const RingPoints& points, const Look& look, const Guess& guess) 
   }
 }
 
-/// Beyond the outermost rings: theirs, continued half a step. What lies above the top ring mostly
-/// stands upright, and planes through two rings end in the far: it keeps its distance.
+/// Beyond the outermost rings: theirs, believed for half a step. What lies above the top ring
+/// mostly stands upright, and planes through two rings end in the far: farther up it keeps its
+/// distance.
 Guess beyond_edge(const RingPoints& points, const Look& look) {
   const bool top = look.above.ring < 0;
   const RingLook& edge = top ? look.below : look.above;
@@ -202,14 +226,14 @@ Guess beyond_edge(const RingPoints& points, const Look& look) {
   const double step = rings < 2 ? 0.01
                       : top     ? elevations[0] - elevations[1]
                                 : elevations[rings - 2] - elevations[rings - 1];
+  const bool near = std::abs(look.line.side(edge.place)) <= 0.5 * step * edge.r;
   Guess guess{top ? DenseMode::only_below : DenseMode::only_above, edge.r, top ? 0.0 : 1.0};
-  if (!top && make_plane(inner, edge)) {
+  if ((near || !top) && make_plane(inner, edge)) {
     const double there = met(look.line.inverse_to(inner.place, edge.place));
     if (there > edge.r / 2 && there < 2 * edge.r) guess.r = there;
   }
   guess.doubt = doubt_of(points, look, guess);
-  const double away = std::abs(look.line.side(edge.place)) / edge.r;
-  guess.seen = edge.here() && away <= 0.5 * step ? Seen::surface : Seen::unknown;
+  guess.seen = edge.here() && near ? Seen::surface : Seen::unknown;
   return guess;
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "codec/compact_field.hpp"
@@ -97,6 +98,230 @@ TEST(DenseField, OfNothingKnowsNothing) {
 TEST(DenseField, MasksLeaveTheFieldAlone) {
   const auto plain = std::make_shared<EmptyField>();
   EXPECT_EQ(dense_field(plain, {.strategy = DenseStrategy::masks}), plain);
+}
+
+/// A box around the sensor that is open above 5 degrees, with a pillar at azimuth 0.
+double street(const Vec3& origin, const Vec3& direction) {
+  constexpr double kPillarX = 4, kPillarHalf = 0.4, kGround = -1.7, kWall = 12;
+  const auto inside = [&](double length) { return length > 0 ? length : 1e9; };
+  double length = inside((kGround - origin.z) / direction.z);
+  length = std::min(length, inside((std::copysign(kWall, direction.x) - origin.x) / direction.x));
+  length = std::min(length, inside((std::copysign(kWall, direction.y) - origin.y) / direction.y));
+  const double pillar = inside((kPillarX - origin.x) / direction.x);
+  if (std::abs(origin.y + pillar * direction.y) < kPillarHalf) length = std::min(length, pillar);
+  const bool sky = direction.z > std::sin(5 * kDegree);
+  return sky ? kNan : length;
+}
+
+std::shared_ptr<const Field> street_field(bool origins = true) {
+  return dense_field(std::make_shared<RingField>(rings(origins), 720, street));
+}
+
+TEST(DenseField, LeavesCliffsSharp) {
+  const auto field = street_field();
+  std::size_t near = 0, far = 0;
+  for (double around = -9; around <= 9; around += .05) {
+    for (double up = -3; up <= 4; up += .13) {
+      const Vec3 direction = direction_of(up * kDegree, around * kDegree);
+      const RangeEstimate told = estimate(*field, {{}, direction});
+      ASSERT_TRUE(told.valid()) << up << ' ' << around;
+      // On the pillar or on the wall behind it, nowhere between.
+      const double x = told.range_m * direction.x;
+      const bool pillar = std::abs(x - 4) < .05, wall = std::abs(x - 12) < .05;
+      ASSERT_TRUE(pillar || wall) << x << " at " << up << ' ' << around;
+      ++(pillar ? near : far);
+      const double edge = std::atan2(.4, 4) / kDegree;  // known to a column
+      if (std::abs(around) < edge - .5) {
+        EXPECT_TRUE(pillar);
+      }
+      if (std::abs(around) > edge + .5) {
+        EXPECT_TRUE(wall);
+      }
+    }
+  }
+  EXPECT_GT(near, 1000u);
+  EXPECT_GT(far, 1000u);
+}
+
+TEST(DenseField, FollowsTheGroundUpToWhatStandsOnIt) {
+  const auto field = street_field(false);
+  double worst = 0;
+  for (double up = -20; up <= -4; up += .11) {
+    for (double around = 20; around <= 70; around += 1.7) {
+      const Vec3 direction = direction_of(up * kDegree, around * kDegree);
+      const RangeEstimate told = estimate(*field, {{}, direction});
+      ASSERT_TRUE(told.valid());
+      worst = std::max(worst, std::abs(told.range_m - street({}, direction)));
+    }
+  }
+  EXPECT_LT(worst, .35);  // chords over the foot of the wall are 1 m off
+}
+
+TEST(DenseField, InventsNothingInTheSky) {
+  const auto field = street_field();
+  for (double around = -180; around < 180; around += 3.3) {
+    const RangeEstimate told = estimate(*field, {{}, direction_of(8 * kDegree, around * kDegree)});
+    EXPECT_EQ(told.seen, Seen::nothing) << around;
+    EXPECT_LT(told.confidence, .5);
+  }
+}
+
+TEST(DenseField, LeavesGapsEmptyAndFillsHoles) {
+  auto plain = std::make_shared<RingField>(rings(true), 720, test::plane({0, 1, 0}, 8));
+  for (std::uint32_t row = 0; row < 16; ++row) {
+    for (std::uint32_t column = 530; column < 560; ++column) plain->clear(row, column);
+    plain->clear(row, 500 + row);  // one hole in each ring
+  }
+  const auto field = dense_field(plain);
+  const auto seen = [&](double column) {
+    const double azimuth = plain->lattice().azimuth(column);
+    return estimate(*field, {{}, direction_of(-3.3 * kDegree, azimuth)}).seen;
+  };
+  // No laser fired there at all: nobody knows.
+  for (double column = 534; column < 556; column += .4) EXPECT_EQ(seen(column), Seen::unknown);
+  for (double column = 490; column < 528; column += .4) EXPECT_EQ(seen(column), Seen::surface);
+}
+
+TEST(DenseField, KnowsAGapThatOtherRingsSawBeyond) {
+  auto plain = std::make_shared<RingField>(rings(false), 720, test::plane({0, 1, 0}, 8));
+  for (std::uint32_t row = 4; row < 9; ++row) {
+    for (std::uint32_t column = 530; column < 560; ++column) plain->clear(row, column);
+  }
+  const auto field = dense_field(plain);
+  const double azimuth = plain->lattice().azimuth(545.3);
+  const double up = plain->lattice().elevation(6.4);
+  EXPECT_EQ(estimate(*field, {{}, direction_of(up, azimuth)}).seen, Seen::nothing);
+}
+
+TEST(DenseField, EndsHalfAStepBeyondTheOutermostRings) {
+  const test::World world = test::plane({-.8, .6, 0}, 15);
+  const auto plain = std::make_shared<RingField>(rings(false), 720, world);
+  const auto field = dense_field(plain);
+  const double azimuth = 143.2 * kDegree;
+  for (const auto& [row, seen] : {std::pair{-.45, Seen::surface},
+                                  {-.6, Seen::unknown},
+                                  {-20.0, Seen::unknown},
+                                  {15.45, Seen::surface},
+                                  {15.6, Seen::unknown},
+                                  {40.0, Seen::unknown}}) {
+    const Vec3 direction = direction_of(plain->lattice().elevation(row), azimuth);
+    const RangeEstimate told = estimate(*field, {{}, direction});
+    EXPECT_EQ(told.seen, seen) << row;
+    if (told.valid()) {
+      EXPECT_NEAR(told.range_m, world({}, direction), 1e-6) << row;
+    }
+  }
+  EXPECT_FALSE(estimate(*field, {{}, {0, 0, 1}}).valid());
+  EXPECT_FALSE(estimate(*field, {{}, {0, 0, -1}}).valid());
+}
+
+TEST(DenseField, IsOneSurfaceAcrossTheSeam) {
+  const auto field =
+      dense_field(std::make_shared<RingField>(rings(true), 720, test::plane({-1, 0, 0}, 8)));
+  for (double beside = -.7; beside <= .7; beside += .01) {
+    const Vec3 direction = direction_of(-5 * kDegree, (180 + beside) * kDegree);
+    const RangeEstimate told = estimate(*field, {{}, direction});
+    ASSERT_TRUE(told.valid()) << beside;
+    EXPECT_NEAR(told.range_m * direction.x, -8, 1e-6) << beside;
+  }
+}
+
+TEST(DenseField, SaysOfItsCellsWhatTheFileSays) {
+  constexpr double kOffset_m = .07;
+  const auto plain = std::make_shared<RingField>(rings(true), 360, street, kOffset_m);
+  const auto field = dense_field(plain);
+  std::vector<double> columns(360), told(360), coded(360);
+  for (std::size_t i = 0; i < columns.size(); ++i) columns[i] = static_cast<double>(i);
+  for (std::uint32_t row = 0; row < 16; ++row) {
+    field->evaluate_row(row, columns, true, told);
+    plain->evaluate_row(row, columns, true, coded);
+    for (std::uint32_t column = 0; column < 360; ++column) {
+      if (plain->occupied(row, column)) {
+        EXPECT_EQ(told[column], coded[column]);
+      }
+    }
+  }
+  // What rings measure too far is on their rows and not between them.
+  const std::array along{100.5};
+  std::array<double, 1> on{}, off{};
+  const auto wall = dense_field(
+      std::make_shared<RingField>(rings(false), 360, test::plane({0, -1, 0}, 8), kOffset_m));
+  wall->evaluate_row(5, along, true, on);
+  wall->evaluate_row(5 + 1e-9, along, true, off);
+  EXPECT_NEAR(on[0] - off[0], kOffset_m, 1e-6);
+}
+
+TEST(DenseField, PlacesWhatItEvaluates) {
+  const auto field =
+      dense_field(std::make_shared<RingField>(rings(true), 720, test::plane({0, 1, 0}, 8)));
+  const std::array columns{500.6, 510.3, 533.9};
+  std::array<double, 3> ranges{};
+  std::array<Vec3, 3> points;
+  for (const double row : {0.0, 3.2, 7.5, 14.9, 15.0}) {
+    field->evaluate_row(row, columns, true, ranges);
+    field->place_row(row, columns, ranges, points);
+    for (const Vec3& p : points) EXPECT_NEAR(p.y, 8, 1e-3) << row;
+  }
+}
+
+TEST(DenseField, IsTheSameForAnyThreadsAndOrder) {
+  const auto field = street_field();
+  std::vector<Sightline> lines;
+  for (std::size_t i = 0; i < 20000; ++i) {
+    const double k = static_cast<double>(i);
+    lines.push_back({{0, 0, .01 * std::sin(k)},
+                     direction_of(.3 * std::sin(k * 1.7) - .1, std::remainder(k * 2.4, 6.283))});
+  }
+  std::vector<RangeEstimate> once(lines.size()), many(lines.size()), backwards(lines.size());
+  field->range_along(lines, once, 1);
+  field->range_along(lines, many, 5);
+  std::reverse(lines.begin(), lines.end());
+  field->range_along(lines, backwards, 3);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const auto same = [&](const RangeEstimate& other) {
+      return once[i].seen == other.seen && once[i].confidence == other.confidence &&
+             (once[i].range_m == other.range_m ||
+              (std::isnan(once[i].range_m) && std::isnan(other.range_m)));
+    };
+    ASSERT_TRUE(same(many[i]) && same(backwards[lines.size() - 1 - i])) << i;
+  }
+}
+
+TEST(DenseField, LooksThroughTheMotionOfTheScan) {
+  const auto plain = std::make_shared<RingField>(rings(true), 720, test::plane({0, 1, 0}, 8));
+  RigidMotion motion;
+  const double c = std::cos(.2), s = std::sin(.2);
+  motion.rotation = {{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}};
+  motion.move = {.3, -.2, .1};
+  plain->move(motion);
+  const auto field = dense_field(plain);
+  std::size_t seen = 0;
+  for (double around = 60; around < 130; around += 1.3) {
+    const Sightline line{{.05, .02, -.1}, direction_of(-.11, around * kDegree)};
+    const RangeEstimate told = estimate(*field, line);
+    if (!told.valid()) continue;
+    const Vec3 own = motion.undo(line.origin + line.direction * told.range_m);
+    EXPECT_NEAR(own.y, 8, 1e-5) << around;
+    ++seen;
+  }
+  EXPECT_GT(seen, 40u);
+}
+
+TEST(DenseField, NamesTheReturnsThatItStandsOn) {
+  const auto plain = std::make_shared<RingField>(rings(false), 720, test::plane({0, 1, 0}, 8));
+  const auto field = dense_field(plain);
+  const double azimuth = plain->lattice().azimuth(540.25), up = plain->lattice().elevation(6.4);
+  const Vec3 direction = direction_of(up, azimuth);
+  const Sources sources = field->sources_at(direction * (8 / direction.y));
+  double sum = 0, row = 0, column = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    sum += sources.weight[i];
+    row += sources.weight[i] * static_cast<double>(sources.cell[i] / 720);
+    column += sources.weight[i] * static_cast<double>(sources.cell[i] % 720);
+  }
+  EXPECT_NEAR(sum, 1, 1e-12);
+  EXPECT_NEAR(row, 6.4, .05);
+  EXPECT_NEAR(column, 540.25, .05);
 }
 
 }  // namespace
