@@ -19,8 +19,16 @@ bool is_finite(const Vec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
+/// The direction made as long as 1, whatever its length.
+Vec3 unit(const Vec3& direction) {
+  const double most =
+      std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+  const Vec3 near{direction.x / most, direction.y / most, direction.z / most};
+  return near * (1 / norm(near));
+}
+
 bool is_sight(const Sightline& line) {
-  return is_finite(line.origin) && is_finite(line.direction) && norm(line.direction) > 0;
+  return is_finite(line.origin) && is_finite(line.direction) && line.direction != Vec3{};
 }
 
 /// The line as it crosses the half-plane of an azimuth.
@@ -43,7 +51,10 @@ void add_sources(const RingLook& ring, double share, std::size_t at, Sources& so
 }  // namespace
 
 DenseField::DenseField(std::shared_ptr<const Field> field, const DenseSettings&)
-    : field_(std::move(field)), points_(*field_), noise_m_(ring_noise_m(points_)) {}
+    : field_(std::move(field)),
+      points_(*field_),
+      motion_(*field_),
+      noise_m_(ring_noise_m(points_)) {}
 
 DenseField::Found DenseField::find_in_plane(const PlaneLine& line) const {
   Found found;
@@ -58,13 +69,13 @@ DenseField::Found DenseField::find(const Sightline& line) const {
   constexpr int kPasses = 5;
   constexpr double kClose = 1e-7;      // radians
   constexpr double kSomewhere_m = 20;  // where nothing is found
-  const bool straight = !field_->moves() && line.origin.x == 0 && line.origin.y == 0;
+  const bool straight = !motion_.moves() && line.origin.x == 0 && line.origin.y == 0;
   double azimuth = azimuth_of(line.direction);
   Found found;
   for (int pass = 0; pass < kPasses; ++pass) {
     Sightline own = line;
-    if (field_->moves()) {
-      const RigidMotion motion = field_->motion_at(azimuth);
+    if (motion_.moves()) {
+      const RigidMotion motion = motion_.at(azimuth);
       own = {motion.undo(line.origin), motion.turned_back(line.direction)};
     }
     found = find_in_plane(in_plane(own, azimuth));
@@ -81,7 +92,7 @@ DenseField::Found DenseField::find(const Sightline& line) const {
 RangeEstimate DenseField::estimate(const Sightline& line) const {
   RangeEstimate estimate;
   if (!is_sight(line) || points_.empty()) return estimate;
-  const Found found = find({line.origin, line.direction * (1 / norm(line.direction))});
+  const Found found = find({line.origin, unit(line.direction)});
   if (found.guess.r > 0) estimate.range_m = found.guess.r;
   estimate.seen = found.guess.seen;
   estimate.confidence = plain_confidence(found.look, found.guess, noise_m_);
@@ -135,7 +146,7 @@ void DenseField::evaluate_row(double row, std::span<const double> columns, bool 
 Sources DenseField::sources_at(const Vec3& point) const {
   Sources sources;
   if (!is_sight({{}, point}) || points_.empty()) return sources;
-  const Found found = find({{}, point * (1 / norm(point))});
+  const Found found = find({{}, unit(point)});
   add_sources(found.look.above, found.guess.above_share, 0, sources);
   add_sources(found.look.below, 1 - found.guess.above_share, 2, sources);
   return sources;

@@ -9,6 +9,7 @@
 
 #include "curlidar/dense.hpp"
 #include "dense/look.hpp"
+#include "dense/motion_table.hpp"
 #include "dense/ring_points.hpp"
 #include "dense/rules.hpp"
 
@@ -56,6 +57,7 @@ class DenseField final : public Field {
 
   std::shared_ptr<const Field> field_;
   RingPoints points_;
+  MotionTable motion_;
   double noise_m_ = 0;  ///< of the samples, for confidence
 };
 

@@ -191,26 +191,34 @@ double spread(const RingPoints& points, const PlaneLine& line, const RingLook& r
   return std::log(most / least);
 }
 
-/// As counted where rings of six sensors were left out.
-double doubt_of(const RingPoints& points, const Look& look, const Guess& guess) {
-  if (!(guess.r > 0)) return 1;
+/// Of a guess at something that is there. As counted where rings of six sensors were left out.
+double doubt_of_range(const RingPoints& points, const Look& look, const Guess& guess) {
   // The wrong one of two surfaces is the worse the farther they are apart.
   if (guess.jump()) {
     return 0.65 + 0.2 * (1 - std::exp(-std::abs(look.above.r - look.below.r) / kFarApart_m));
   }
   const double wild =
       std::max(spread(points, look.line, look.above), spread(points, look.line, look.below));
-  const double nearest =
-      std::max(look.above.known ? look.above.near : 0, look.below.known ? look.below.near : 0);
-  const double far = nearest > kBeside ? 0.15 : nearest > 0.75 ? 0.1 : 0;
   switch (guess.mode) {
     case DenseMode::smooth:
-      return std::min(0.01 + 1.2 * wild, 0.16) + far;
+      return std::min(0.01 + 1.2 * wild, 0.16);
     case DenseMode::planar:
-      return std::min(0.01 + 3 * wild, 0.4) + far;
+      return std::min(0.01 + 3 * wild, 0.4);
     default:
-      return std::min(0.1 + wild, 0.3) + far;
+      return std::min(0.1 + wild, 0.3);
   }
+}
+
+/// Whether there is anything, counted likewise: as good as certain between two samples, even odds
+/// beside one, hardly in a gap.
+double return_share(const Look& look) {
+  const double beside = presence(look.above) + presence(look.below);
+  return beside > 1.5 ? 0.97 : beside > 0.5 ? 0.5 : 0.1;
+}
+
+double doubt_of(const RingPoints& points, const Look& look, const Guess& guess) {
+  if (!(guess.r > 0)) return 1;
+  return 1 - return_share(look) * (1 - doubt_of_range(points, look, guess));
 }
 
 /// Beyond the outermost rings: theirs, believed for half a step. What lies above the top ring
