@@ -82,10 +82,11 @@ Result<std::vector<std::byte>> format_cloud(const Cloud& cloud, const std::strin
 Status write_cloud(const std::string& path, const Cloud& cloud, const WriteOptions& options = {});
 
 /// Writes a triangle mesh with float32 vertices: OBJ if `path` ends in .obj, otherwise PLY in the
-/// given encoding (ascii or binary, little endian). "-" is standard output. Atomic.
+/// given encoding (ascii or binary, little endian). "-" is standard output. `normals` are of the
+/// vertices, or none. Atomic.
 Status write_mesh(const std::string& path, std::span<const Vec3> vertices,
                   std::span<const std::array<std::uint32_t, 3>> triangles,
-                  Encoding encoding = Encoding::binary);
+                  Encoding encoding = Encoding::binary, std::span<const Vec3> normals = {});
 
 /// Whole-file helpers used by every command ("-" is standard input/output; writes are atomic).
 Result<std::vector<std::byte>> read_file(const std::string& path);

@@ -1,29 +1,107 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clouds from a decoded scan, at any density.
+// Clouds and meshes from a decoded scan: at any density, in any directions, as any sensor sees it.
+//
+// Everything comes from the continuous field of the file; points are given where it believes in a
+// surface. The returns that were coded are given as they are by `reconstruct` with factors 1 x 1,
+// and kept among invented points on request.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "curlidar/cloud.hpp"
 #include "curlidar/codec.hpp"
+#include "curlidar/dense.hpp"
+#include "curlidar/progress.hpp"
 #include "curlidar/result.hpp"
+#include "curlidar/sensor.hpp"
+#include "curlidar/vec3.hpp"
 
 namespace curlidar {
 
 struct ReconstructSettings {
   double rows = 1;         ///< R_row: factor on the coded lattice's rows, may be fractional, > 0
   double columns = 1;      ///< R_col
-  bool masks = true;       ///< apply point grid and cliffs; off gives every cell a point
-  bool organised = false;  ///< keep empty cells as NaN
-  std::size_t threads = 1;
-  std::uint64_t max_points = 1ull << 31;  ///< refuse larger grids
+  bool masks = true;       ///< only what is believed; off gives every direction a point if it can
+  bool organised = false;  ///< keep the grid, with NaN where there is nothing
+  /// What decides between the samples; files of the paper's profiles have masks unless told
+  /// otherwise, compact files the best.
+  std::optional<DenseStrategy> strategy{};
+  /// Invented points are left out below this confidence, in [0, 1].
+  double min_confidence = 0;
+  bool confidence = false;  ///< attribute "confidence" (float32; coded returns have 1)
+  /// Attributes "normal_x", "normal_y", "normal_z" (float32): of the surface, towards the sensor;
+  /// NaN where it is not known.
+  bool normals = false;
+  /// All coded returns come first, exactly and with their own attributes; no invented point lies
+  /// within half a cell (of densities: half the spacing) of one. Of grids and densities only.
+  bool keep_originals = false;
+  bool original =
+      false;  ///< attribute "original" (uint8): 1 of coded returns, 0 of invented points
+  /// The part of the scan that was decoded: nothing is invented outside its azimuths.
+  std::optional<ScanRegion> region{};
+  std::size_t threads = 1;                ///< never changes the result; 0 = all cores
+  std::uint64_t max_points = 1ull << 31;  ///< refuse larger results
 };
 
+/// The continuous field that all of these ask: the scan's own, seen with a strategy (nullopt: as
+/// the settings have it by default). For queries of one's own: Field::range_at. O(cells) to make.
+std::shared_ptr<const Field> continuous_field(const DecodedScan& scan,
+                                              std::optional<DenseStrategy> strategy = {});
+
 /// The cloud seen on an R_row x R_col times denser grid. With factors 1 x 1 and masks: the coded
-/// returns one for one with their attributes, or the encoded cloud of files with every return;
-/// otherwise attributes of the nearest coded return. Compact files cut off or decoded in part give
-/// what is there.
-Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& settings = {});
+/// returns one for one with their attributes, or the encoded cloud of files with every return.
+///
+/// Attributes of invented points: measured ones (intensity, ...) are interpolated between the coded
+/// returns of the surface, those that name or count (ring, time, returns, labels, packed colours,
+/// 64-bit integers) are taken from the nearest. Compact files cut off or decoded in part give what
+/// is there; nothing there is an empty cloud. Errors: invalid_argument (factors, confidence, files
+/// without a field), limit_exceeded (max_points). About 1 us a point.
+Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& settings = {},
+                          const ProgressCallback& progress = {});
+
+/// One point for each direction (any length > 0) from the origin of the cloud's frame, in the same
+/// order; NaN where nothing is believed. `rows`, `columns` and `organised` do not matter. Errors:
+/// invalid_argument (also: a direction that is zero or not finite, named by its index).
+Result<Cloud> reconstruct_directions(const DecodedScan& scan, std::span<const Vec3> directions,
+                                     const ReconstructSettings& settings = {},
+                                     const ProgressCallback& progress = {});
+
+/// The scan as another spinning sensor at the same place sees it: every ring and column of the
+/// profile, from where its beams start, between its limits of range. Ring by ring from the top;
+/// `organised` keeps rings x columns with NaN. Attribute "ring" (uint16) is that of the profile.
+/// Errors: invalid_argument (a profile that validate() refuses), unsupported (limited fields of
+/// view), limit_exceeded.
+Result<Cloud> reconstruct_sensor(const DecodedScan& scan, const SensorProfile& sensor,
+                                 const ReconstructSettings& settings = {},
+                                 const ProgressCallback& progress = {});
+
+/// About `points_per_m2` points on every square metre of surface that is believed, near or far,
+/// straight or at an angle: returns that lie closer than that are thinned, wide gaps on one surface
+/// are filled. Unorganised. Errors: invalid_argument (a density outside [1e-3, 1e8]),
+/// limit_exceeded: as soon as the surfaces are known to need more than max_points.
+Result<Cloud> reconstruct_density(const DecodedScan& scan, double points_per_m2,
+                                  const ReconstructSettings& settings = {},
+                                  const ProgressCallback& progress = {});
+
+/// Triangles with their front, counter-clockwise, to the sensor.
+struct SurfaceMesh {
+  std::vector<Vec3> vertices;
+  std::vector<Vec3> normals;  ///< of the vertices, unit length, if asked for; else empty
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// The surfaces between neighbouring points of the R_row x R_col times denser grid: two neighbours
+/// are joined where the field believes in a surface half way, on the straight line between them;
+/// so cliffs and gaps stay open. Four evaluations a vertex. Errors: those of reconstruct;
+/// limit_exceeded also beyond 2^32 vertices.
+Result<SurfaceMesh> reconstruct_mesh(const DecodedScan& scan,
+                                     const ReconstructSettings& settings = {},
+                                     const ProgressCallback& progress = {});
 
 }  // namespace curlidar

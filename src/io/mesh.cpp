@@ -15,49 +15,77 @@ ByteSpan bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
-std::string obj_text(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+/// What a mesh file holds; normals are of the vertices, or empty.
+struct MeshView {
+  std::span<const Vec3> vertices;
+  std::span<const Triangle> triangles;
+  std::span<const Vec3> normals;
+};
+
+void add_line(std::string& text, const char* start, const Vec3& v) {
+  fmt::format_to(std::back_inserter(text), "{}{} {} {}", start, static_cast<float>(v.x),
+                 static_cast<float>(v.y), static_cast<float>(v.z));
+}
+
+std::string obj_text(const MeshView& mesh) {
   std::string text;
   auto out = std::back_inserter(text);
-  for (const Vec3& v : vertices) {
-    fmt::format_to(out, "v {} {} {}\n", static_cast<float>(v.x), static_cast<float>(v.y),
-                   static_cast<float>(v.z));
+  for (const Vec3& v : mesh.vertices) {
+    add_line(text, "v ", v);
+    text += '\n';
   }
-  for (const Triangle& t : triangles) {  // OBJ counts from 1
-    fmt::format_to(out, "f {} {} {}\n", std::uint64_t{t[0]} + 1, std::uint64_t{t[1]} + 1,
-                   std::uint64_t{t[2]} + 1);
+  for (const Vec3& n : mesh.normals) {
+    add_line(text, "vn ", n);
+    text += '\n';
+  }
+  for (const Triangle& t : mesh.triangles) {
+    text += 'f';
+    for (const std::uint32_t corner : t) {  // OBJ counts from 1
+      const std::uint64_t number = std::uint64_t{corner} + 1;
+      fmt::format_to(out, " {}", number);
+      if (!mesh.normals.empty()) fmt::format_to(out, "//{}", number);
+    }
+    text += '\n';
   }
   return text;
 }
 
-std::string ply_header(const char* format, std::size_t vertices, std::size_t triangles) {
+std::string ply_header(const char* format, const MeshView& mesh) {
+  const char* normals =
+      mesh.normals.empty() ? "" : "property float nx\nproperty float ny\nproperty float nz\n";
   return fmt::format(
       "ply\nformat {} 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
-      "property float z\nelement face {}\nproperty list uchar uint vertex_indices\nend_header\n",
-      format, vertices, triangles);
+      "property float z\n{}element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
+      format, mesh.vertices.size(), normals, mesh.triangles.size());
 }
 
-std::string ply_text(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
-  std::string text = ply_header("ascii", vertices.size(), triangles.size());
+std::string ply_text(const MeshView& mesh) {
+  std::string text = ply_header("ascii", mesh);
   auto out = std::back_inserter(text);
-  for (const Vec3& v : vertices) {
-    fmt::format_to(out, "{} {} {}\n", static_cast<float>(v.x), static_cast<float>(v.y),
-                   static_cast<float>(v.z));
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    add_line(text, "", mesh.vertices[i]);
+    if (!mesh.normals.empty()) add_line(text, " ", mesh.normals[i]);
+    text += '\n';
   }
-  for (const Triangle& t : triangles) fmt::format_to(out, "3 {} {} {}\n", t[0], t[1], t[2]);
+  for (const Triangle& t : mesh.triangles) fmt::format_to(out, "3 {} {} {}\n", t[0], t[1], t[2]);
   return text;
 }
 
-std::vector<std::byte> ply_binary(std::span<const Vec3> vertices,
-                                  std::span<const Triangle> triangles) {
-  const std::string header = ply_header("binary_little_endian", vertices.size(), triangles.size());
+void write_vector(ByteWriter& writer, const Vec3& v) {
+  writer.write(static_cast<float>(v.x));
+  writer.write(static_cast<float>(v.y));
+  writer.write(static_cast<float>(v.z));
+}
+
+std::vector<std::byte> ply_binary(const MeshView& mesh) {
+  const std::string header = ply_header("binary_little_endian", mesh);
   ByteWriter writer;
   writer.write_bytes(bytes_of(header));
-  for (const Vec3& v : vertices) {
-    writer.write(static_cast<float>(v.x));
-    writer.write(static_cast<float>(v.y));
-    writer.write(static_cast<float>(v.z));
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    write_vector(writer, mesh.vertices[i]);
+    if (!mesh.normals.empty()) write_vector(writer, mesh.normals[i]);
   }
-  for (const Triangle& t : triangles) {
+  for (const Triangle& t : mesh.triangles) {
     writer.write(std::uint8_t{3});
     for (const std::uint32_t corner : t) writer.write(corner);
   }
@@ -67,14 +95,16 @@ std::vector<std::byte> ply_binary(std::span<const Vec3> vertices,
 }  // namespace
 
 Status write_mesh(const std::string& path, std::span<const Vec3> vertices,
-                  std::span<const Triangle> triangles, Encoding encoding) {
-  if (path.ends_with(".obj")) {
-    return write_file(path, bytes_of(obj_text(vertices, triangles)));
+                  std::span<const Triangle> triangles, Encoding encoding,
+                  std::span<const Vec3> normals) {
+  if (!normals.empty() && normals.size() != vertices.size()) {
+    return Error{ErrorCode::invalid_argument, fmt::format("{}: {} normals for {} vertices", path,
+                                                          normals.size(), vertices.size())};
   }
-  if (encoding == Encoding::ascii) {
-    return write_file(path, bytes_of(ply_text(vertices, triangles)));
-  }
-  if (encoding == Encoding::binary) return write_file(path, ply_binary(vertices, triangles));
+  const MeshView mesh{vertices, triangles, normals};
+  if (path.ends_with(".obj")) return write_file(path, bytes_of(obj_text(mesh)));
+  if (encoding == Encoding::ascii) return write_file(path, bytes_of(ply_text(mesh)));
+  if (encoding == Encoding::binary) return write_file(path, ply_binary(mesh));
   return Error{ErrorCode::unsupported,
                fmt::format("{}: meshes are written in ascii or binary encoding", path)};
 }

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A decoded scan as its reconstructions look at it: along lines of sight, believing or not.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "curlidar/reconstruct.hpp"
+
+namespace curlidar {
+
+/// Points found along lines of sight; NaN where nothing is believed.
+struct Samples {
+  std::vector<Vec3> points;
+  std::vector<float> confidence;    ///< of the points
+  std::vector<std::uint16_t> ring;  ///< of a virtual sensor; else empty
+  std::uint32_t width = 0, height = 1;
+
+  void resize(std::size_t size) {
+    points.resize(size);
+    confidence.resize(size);
+  }
+  void append(const Samples& other);
+  /// Removes the empty slots, and with them the layout.
+  void drop_empty();
+};
+
+/// The field of a scan and what of it is to be believed. `scan` must outlive the view.
+class View {
+ public:
+  /// Invalid_argument for settings out of bounds and for files without a field.
+  static Result<View> make(const DecodedScan& scan, const ReconstructSettings& settings);
+
+  const DecodedScan& scan() const { return *scan_; }
+  const ReconstructSettings& settings() const { return settings_; }
+  const Field& field() const { return *field_; }
+
+  /// Looks along the lines; all three have the same size.
+  void look(std::span<const Sightline> lines, std::span<Vec3> points, std::span<float> confidence,
+            std::size_t threads) const;
+  /// A line of the lattice at these columns: as look does from the places where its lines start,
+  /// at exactly the ranges of evaluate_row.
+  void look_along_row(double row, std::span<const double> columns, std::span<Vec3> points,
+                      std::span<float> confidence) const;
+  /// Whether a point lies in the part of the scan that was asked for.
+  bool holds(const Vec3& point) const;
+
+ private:
+  View(const DecodedScan& scan, const ReconstructSettings& settings);
+
+  const DecodedScan* scan_;
+  ReconstructSettings settings_;
+  std::shared_ptr<const Field> field_;
+};
+
+/// Lines of sight of a fractional row of the lattice at fractional columns, as the field places
+/// points on them.
+std::vector<Sightline> lines_of_row(const Field& field, double row,
+                                    std::span<const double> columns);
+
+/// Calls body(begin, end) for consecutive parts of [0, count), and progress between them.
+template <class Body>
+void in_batches(std::size_t count, std::size_t batch, const ProgressCallback& progress,
+                const Body& body) {
+  for (std::size_t begin = 0; begin < count; begin += batch) {
+    if (progress) {
+      progress("reconstruct", static_cast<double>(begin) / static_cast<double>(count));
+    }
+    body(begin, std::min(count, begin + batch));
+  }
+}
+
+/// Limit_exceeded for more points than the settings allow; `what` makes them.
+Status check_points(std::uint64_t rows, std::uint64_t columns, const char* what,
+                    const ReconstructSettings& settings);
+
+inline constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+inline constexpr Vec3 kNoPoint{kNowhere, kNowhere, kNowhere};
+
+}  // namespace curlidar
