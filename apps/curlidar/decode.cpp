@@ -58,9 +58,10 @@ std::string missing_text(const std::string& input, const std::vector<std::string
 /// A result without a single point is right, but seldom what was meant.
 void warn_if_empty(const Job& job, const DecodedScan& scan, const DecodePlan& plan,
                    std::size_t points) {
-  if (points != 0) return;
+  const bool in_part = plan.decoding().region.has_value();
+  if (points != 0 || (scan.coded_returns == 0 && !in_part)) return;
   print_warning(
-      scan.coded_returns == 0 && plan.decoding().region
+      scan.coded_returns == 0
           ? fmt::format("{} holds no return in this region: {} is empty", job.input, job.output)
           : fmt::format("nothing of {} is believed where it was asked for: {} is empty", job.input,
                         job.output));

@@ -128,9 +128,9 @@ bool is_interpolated(const Attribute& attribute) {
   std::transform(name.begin(), name.end(), name.begin(), [](char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   });
-  return !contains_any(name,
-                       {"ring", "time", "stamp", "return", "label", "class", "laser", "channel",
-                        "semantic", "instance", "index", "flag", "tag", "rgb", "normal"}) &&
+  return !contains_any(name, {"ring", "time", "stamp", "return", "label", "class", "laser",
+                              "channel", "semantic", "instance", "index", "flag", "tag", "number",
+                              "count", "rgb", "normal"}) &&
          !is_any(name, {"t", "id", "line", "row", "column", "col", "echo", "valid"});
 }
 

@@ -116,17 +116,24 @@ std::array<double, 4> weights_at(double down, double right) {
   return {(1 - down) * (1 - right), (1 - down) * right, down * (1 - right), down * right};
 }
 
-/// Square metres that a steradian shows in a direction, if its surface is at `range`.
+/// Square metres that a steradian shows in a direction, if its surface is at `range`: by the planes
+/// that it may be on.
 double area_at(const Quad& quad, const Vec3& direction, const std::array<double, 4>& weights,
                double range) {
-  constexpr double kSame_m = 0.05, kSameShare = 0.05;
+  constexpr double kOff_m = 0.05, kOffShare = 0.05;    // from any plane: another surface
+  constexpr double kSame_m = 0.01, kSameShare = 0.01;  // farther than from the nearest plane
+  std::array<double, 4> off{};
+  double nearest = kOff_m + kOffShare * range;
+  for (std::size_t k = 0; k < off.size(); ++k) {
+    const bool exists = quad.planes[k].exists();
+    off[k] = exists ? std::abs(quad.planes[k].range(direction) - range) : 1e300;
+    nearest = std::min(nearest, off[k]);
+  }
   double sum = 0, weight = 0;
-  for (std::size_t k = 0; k < quad.planes.size(); ++k) {
-    const Plane& plane = quad.planes[k];
-    if (!plane.exists()) continue;
-    if (std::abs(plane.range(direction) - range) > kSame_m + kSameShare * range) continue;
+  for (std::size_t k = 0; k < off.size(); ++k) {
+    if (off[k] > nearest + kSame_m + kSameShare * range) continue;
     const double w = weights[k] + 1e-3;
-    sum += w * plane.area(direction);
+    sum += w * quad.planes[k].area(direction);
     weight += w;
   }
   return weight > 0 ? sum / weight : range * range;

@@ -183,7 +183,7 @@ TEST(CompactFieldOnRays, DensePointsTakeTheAttributesOfTheirNeighbours) {
   const double width = kTurn / scan.table.turn_columns;
   for (std::size_t i = 0; i < dense.size(); ++i) {
     const Vec3 &p = dense.positions[i], &neighbour = scan.points[numbers[i]];
-    ASSERT_LT(std::abs(std::remainder(azimuth_of(p) - azimuth_of(neighbour), kTurn)), 2.2 * width);
+    ASSERT_LT(std::abs(std::remainder(azimuth_of(p) - azimuth_of(neighbour), kTurn)), 4 * width);
     ASSERT_LT(std::abs(elevation_of(p) - elevation_of(neighbour)), .06);
   }
 }
