@@ -43,6 +43,10 @@ if(CURLIDAR_BUILD_APP AND CURLIDAR_BUILD_BENCH)
     PATTERN "__pycache__" EXCLUDE PATTERN "measure" EXCLUDE)
   install(TARGETS report_measure rate_distortion
     RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/curlidar COMPONENT report)
+  if(TARGET density)  # fits profiles for the section on upsampling
+    install(TARGETS density
+      RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/curlidar COMPONENT report)
+  endif()
 endif()
 
 if(NOT PROJECT_IS_TOP_LEVEL)

@@ -72,6 +72,10 @@ class Context:
         before it is needed. `ending`: such as '.curl'."""
         return Made(self.scratch / (self._digest("made", command) + ending), tuple(command))
 
+    def made_text(self, ending, text):
+        """A file of scratch that holds a text: input of a command."""
+        return files.write(self.scratch / (digest("text", text) + ending), text)
+
     def make(self, made):
         """The path of a file that must be there now; raises run.CommandFailed."""
         with self._lock:

@@ -69,4 +69,13 @@ def chosen(paths, data, every, quick):
     return [scan for scan in scans if scan.path.is_file()]
 
 
-__all__ = ["NoScans", "QUICK_SCENES", "SCENES", "Scan", "Scene", "chosen"]
+def every_scan_beside(scan):
+    """All scans of the data folder that a scan lies in; itself if it lies in none."""
+    path = scan.path.as_posix()
+    root = Path(path.removesuffix(scan.name)) if path.endswith("/" + scan.name) else None
+    if root is None or not (root / MANIFEST).is_file():
+        return [scan]
+    return [each for each in from_manifest(root, every=True) if each.path.is_file()]
+
+
+__all__ = ["NoScans", "QUICK_SCENES", "SCENES", "Scan", "Scene", "chosen", "every_scan_beside"]

@@ -20,6 +20,8 @@ Status borders_truth(const Arguments& arguments);
 // ring is coded and of a simulated one.
 Status range_images(const Arguments& arguments);
 Status range_images_truth(const Arguments& arguments);
+// nearest.cpp: distances between the whole scan and every K-th ring of it made denser.
+Status nearest(const Arguments& arguments);
 // timing.cpp: CPU time of the codecs, and of the stages of the paper's.
 Status timing(const Arguments& arguments);
 // upsampling.cpp: 16 rows to 64 by TULIP's protocol.
