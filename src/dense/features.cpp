@@ -94,7 +94,7 @@ int kind(DenseMode mode) {
 }  // namespace
 
 PlainFeatures plain_features(const RingPoints& points, const Look& look, const Guess& guess,
-                             double step_m) {
+                             double noise_m) {
   PlainFeatures features{};
   Filler to(features);
   const RingLook &above = look.above, &below = look.below;
@@ -109,7 +109,8 @@ PlainFeatures plain_features(const RingPoints& points, const Look& look, const G
   to.add(look.gap * r);
   to.add(r);
   to.add(points.column_step() * r);
-  to.add(step_m);
+  to.add(noise_m);
+  to.add(guess.doubt);
   to.add(look.line.from.z + r * look.line.along.z);
   to.add(above.place.z);
   to.add(below.place.z);
@@ -131,7 +132,7 @@ PlainFeatures plain_features(const RingPoints& points, const Look& look, const G
   to.add(nearest_ratio(row_below, r));
   add_row(to, above, row_above, r);
   add_row(to, below, row_below, r);
-  static_assert(kPlainFeatures == 18 + 4 + 4 + 2 * 14 + 2);
+  static_assert(kPlainFeatures == 19 + 4 + 4 + 2 * 14 + 2);
   to.add(std::min(above.near, below.near));
   to.add(row_above.count(1) + row_below.count(1));
   return features;

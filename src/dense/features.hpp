@@ -14,16 +14,16 @@
 namespace curlidar {
 
 /// Numbers that mean the same for every sensor: ratios of ranges, metres, columns, degrees.
-inline constexpr std::size_t kPlainFeatures = 56;
+inline constexpr std::size_t kPlainFeatures = 57;
 /// Those, and what a profile knows of the row.
 inline constexpr std::size_t kRowFeatures = kPlainFeatures + 9;
 
 using PlainFeatures = std::array<float, kPlainFeatures>;
 using RowFeatures = std::array<float, kRowFeatures>;
 
-/// `step_m`: what the samples are quantised to, 0 if they are not. About 0.3 us.
+/// `noise_m` is ring_noise_m() of the points. About 0.5 us.
 PlainFeatures plain_features(const RingPoints& points, const Look& look, const Guess& guess,
-                             double step_m);
+                             double noise_m);
 
 /// `row` is one of the profile's; the profile has tables, and the rings are its given rows.
 RowFeatures row_features(const PlainFeatures& plain, const DensityProfile& profile, std::size_t row,

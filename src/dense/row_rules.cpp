@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dense/features.hpp"
+#include "dense/confidence.hpp"
 
 namespace curlidar {
 namespace {
@@ -20,6 +20,14 @@ bool on_one_surface(const Guess& guess) {
 }
 
 }  // namespace
+
+RowRules::RowRules(const RingPoints& points, const DensityProfile& profile)
+    : points_(points), profile_(profile), noise_m_(ring_noise_m(points)) {}
+
+RowFeatures RowRules::features(std::size_t row, const RowGuess& found) const {
+  return row_features(plain_features(points_, found.look, found.guess, noise_m_), profile_, row,
+                      found.look, found.guess);
+}
 
 RowGuess RowRules::look_along_row(std::size_t row, double azimuth) const {
   // Rows look up or down by a little less or more at near things; it settles at once.
@@ -51,18 +59,14 @@ void RowRules::judge(std::size_t row, RowGuess& found) const {
     found.returns = 0;
     return;
   }
-  if (!profile_.returns.empty() || !profile_.residual.empty()) {
-    const RowFeatures features = row_features(plain_features(points_, found.look, guess, 0),
-                                              profile_, row, found.look, guess);
-    found.returns = profile_.returns.empty() ? returns_by_tables(row, found)
-                                             : probability_of(profile_.returns(features));
-    if (on_one_surface(guess)) {
-      guess.r += profile_.bias_m(row, guess.r);
-      if (!profile_.residual.empty()) guess.r *= 1 + profile_.residual(features);
-    }
-  } else {
-    found.returns = returns_by_tables(row, found);
-    if (on_one_surface(guess)) guess.r += profile_.bias_m(row, guess.r);
+  RowFeatures asked{};
+  const bool trees = !profile_.returns.empty() || !profile_.residual.empty();
+  if (trees) asked = features(row, found);
+  found.returns = profile_.returns.empty() ? returns_by_tables(row, found)
+                                           : probability_of(profile_.returns(asked));
+  if (on_one_surface(guess)) {
+    guess.r += profile_.bias_m(row, guess.r);
+    if (!profile_.residual.empty()) guess.r *= 1 + profile_.residual(asked);
   }
   guess.seen = found.returns >= 0.5 ? Seen::surface : Seen::nothing;
 }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "dense/density_profile.hpp"
+#include "dense/features.hpp"
 #include "dense/look.hpp"
 #include "dense/ring_points.hpp"
 #include "dense/rules.hpp"
@@ -22,14 +23,15 @@ struct RowGuess {
 /// The rings are the given rows of the profile, which has tables; both must outlive this.
 class RowRules {
  public:
-  RowRules(const RingPoints& points, const DensityProfile& profile)
-      : points_(points), profile_(profile) {}
+  RowRules(const RingPoints& points, const DensityProfile& profile);
 
   /// What the rules say along a row as seen from the origin, before the profile's say. The
   /// elevation is that at which the row would see what is found.
   RowGuess look_along_row(std::size_t row, double azimuth) const;
   /// The same with it.
   RowGuess guess_along_row(std::size_t row, double azimuth) const;
+  /// What trees of the profile are asked with, before the profile's say.
+  RowFeatures features(std::size_t row, const RowGuess& found) const;
   /// Adds it to what the rules said along a line that is the row's.
   void judge(std::size_t row, RowGuess& found) const;
 
@@ -42,6 +44,7 @@ class RowRules {
 
   const RingPoints& points_;
   const DensityProfile& profile_;
+  double noise_m_ = 0;
 };
 
 }  // namespace curlidar

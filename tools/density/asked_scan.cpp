@@ -13,6 +13,7 @@
 #include "curlidar/io.hpp"
 #include "curlidar/simulate.hpp"
 #include "density/row_scan.hpp"
+#include "report/measure/ring_split.hpp"
 
 namespace curlidar::density {
 namespace {
@@ -43,37 +44,6 @@ class Luck {
  private:
   std::uint64_t state_;
 };
-
-/// The coded part of a scan, and the returns between.
-struct Halves {
-  Cloud coded;
-  SensorProfile sensor;
-  std::vector<Vec3> held_out;
-};
-
-Halves split(const Cloud& own, const Detection& detection, std::size_t every) {
-  Halves halves;
-  halves.sensor = detection.sensor;
-  halves.sensor.name += fmt::format("-every-{}", every);
-  halves.sensor.rings.clear();
-  const std::size_t last = (detection.sensor.rings.size() - 1) / every * every;
-  for (std::size_t ring = 0; ring <= last; ring += every) {
-    halves.sensor.rings.push_back(detection.sensor.rings[ring]);
-  }
-  std::vector<std::uint32_t> coded;
-  for (std::uint32_t i = 0; i < own.size(); ++i) {
-    const std::uint16_t ring = detection.ring_of_point[i];
-    if (!is_return(own.positions[i]) || ring > last) continue;
-    if (ring % every == 0) {
-      coded.push_back(i);
-    } else {
-      halves.held_out.push_back(own.positions[i]);
-    }
-  }
-  halves.coded = select(own, coded);
-  halves.coded.attributes.clear();
-  return halves;
-}
 
 /// As the simulator takes it.
 SensorProfile with_beams_from_origin(SensorProfile sensor) {
@@ -109,8 +79,6 @@ Result<AskedScan> Coder::code(const std::string& name, const Cloud& cloud,
   }
   AskedScan scan;
   scan.field = decoded.field;
-  scan.step_m = decoded.compact->residual_step_m > 0 ? decoded.compact->residual_step_m
-                                                     : decoded.compact->step_m;
   return scan;
 }
 
@@ -133,7 +101,10 @@ Result<AskedScan> ask_simulated(const Coder& coder, const SimulatedScan& what, d
     const double share = 0.25 * std::floor(1 + 3 * luck.uniform());
     const double elevation =
         elevations[below] + (elevations[below + 1] - elevations[below]) * share;
-    const double azimuth = (2 * luck.uniform() - 1) * std::numbers::pi;
+    // Every other one on a column, where most grids look.
+    double column = luck.uniform() * sensor.columns;
+    if (i % 2 == 0) column = std::floor(column);
+    const double azimuth = (2 * column / sensor.columns - 1) * std::numbers::pi;
     const Vec3 direction = direction_of(elevation, azimuth);
     Hit hit;
     const bool met = scene->cast({}, direction, hit) && hit.range_m <= sensor.max_range_m;
@@ -147,17 +118,23 @@ Result<AskedScan> ask_held_out(const Coder& coder, const std::string& path, std:
   constexpr std::size_t kLeastRings = 5;
   CURLIDAR_TRY_ASSIGN(own, read_own_frame(path));
   CURLIDAR_TRY_ASSIGN(detection, detect_sensor(own));
-  const Halves halves = split(own, detection, every);
-  if (halves.sensor.rings.size() < kLeastRings || halves.held_out.empty()) {
+  const bench::RingSplit split =
+      bench::split_rings(own, detection, static_cast<std::uint32_t>(every));
+  if (split.sensor.rings.size() < kLeastRings || split.held_out.empty()) {
     return Error{ErrorCode::unsupported, fmt::format("{}: too few rings", path)};
   }
   std::string name = fmt::format("{}-every-{}", path, every);
   std::replace(name.begin(), name.end(), '/', '_');
-  CURLIDAR_TRY_ASSIGN(scan, coder.code(name, halves.coded, halves.sensor, step_m));
-  const std::size_t step = std::max<std::size_t>(halves.held_out.size() / places, 1);
-  for (std::size_t i = 0; i < halves.held_out.size(); i += step) {
-    const double range = norm(halves.held_out[i]);
-    scan.places.push_back({halves.held_out[i] * (1 / range), range});
+  CURLIDAR_TRY_ASSIGN(scan, coder.code(name, split.coded, split.sensor, step_m));
+  const std::size_t all = split.held_out.size() + split.gaps.size();
+  const std::size_t step = std::max<std::size_t>(all / places, 1);
+  for (std::size_t i = 0; i < all; i += step) {
+    if (i < split.held_out.size()) {
+      const double range = norm(split.held_out[i]);
+      scan.places.push_back({split.held_out[i] * (1 / range), range});
+    } else {
+      scan.places.push_back({split.gaps[i - split.held_out.size()], 0});
+    }
   }
   return scan;
 }

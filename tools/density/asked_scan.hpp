@@ -21,7 +21,6 @@ struct AskedScan {
 
   std::string group;  ///< scene or drive
   std::shared_ptr<const Field> field;
-  double step_m = 0;  ///< of the coded ranges
   std::vector<Place> places;
 };
 
@@ -48,7 +47,8 @@ struct SimulatedScan {
 Result<AskedScan> ask_simulated(const Coder& coder, const SimulatedScan& what, double step_m,
                                 std::size_t places);
 
-/// Rings 0, every, 2 every .. of a scan, asked for up to `places` returns of the others. `every` is
+/// Rings 0, every, 2 every .. of a scan, asked for about `places` returns and
+/// gaps of the others. `every` is
 /// refused if fewer than five rings were left.
 Result<AskedScan> ask_held_out(const Coder& coder, const std::string& path, std::size_t every,
                                double step_m, std::size_t places);

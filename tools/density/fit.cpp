@@ -176,8 +176,7 @@ void fit_trees(std::span<const RowScan> scans, const TreeSettings& settings,
       const RowGuess found = rules.look_along_row(cell.row, cell.azimuth);
       const double r = found.guess.r;
       if (!(r > 0)) continue;
-      const RowFeatures features = row_features(plain_features(points, found.look, found.guess, 0),
-                                                profile, cell.row, found.look, found.guess);
+      const RowFeatures features = rules.features(cell.row, found);
       // What a wrong decision costs in metres.
       add_sample(features, cell.range_m > 0 ? 1 : 0, std::min(r, kMostWeight_m) / 20 + 0.1,
                  returns);
