@@ -171,8 +171,9 @@ Status run_confidence(const Options& options) {
   }
   if (samples.size() == 0) return Error{ErrorCode::invalid_argument, "no scan could be coded"};
   DensityProfile profile;
-  profile.confidence = boost(
-      samples, {.trees = options.confidence_trees, .depth = options.trees.depth}, options.threads);
+  profile.confidence =
+      boost(samples, {.trees = options.confidence_trees, .depth = options.trees.depth, .rate = 0.4},
+            options.threads);
   show("learnt from", check(profile.confidence, samples));
   show("another seed", check(profile.confidence, simulated));
   if (real.size() > 0) show("another drive", check(profile.confidence, real));
