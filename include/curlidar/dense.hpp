@@ -4,8 +4,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "curlidar/field.hpp"
+#include "curlidar/result.hpp"
 
 namespace curlidar {
 
@@ -15,8 +18,25 @@ enum class DenseStrategy : std::uint8_t {
   masks,  ///< what the field itself says, by its own masks
 };
 
+/// What scans of a sensor have taught about the places between the rings of a sparser one: where
+/// its rings look, how often they return, what they measure too far. Opaque.
+struct DensityProfile;
+
+/// Names of the profiles that the library carries, sorted. "generic" is in use without being asked
+/// for: it tells confidence only.
+std::vector<std::string> builtin_density_names();
+/// One of them, or a file ending in .toml (docs/density.md), at most 4 MiB. Errors: not_found, io,
+/// corrupt, invalid_argument with the line.
+Result<std::shared_ptr<const DensityProfile>> load_density_profile(const std::string& name_or_path);
+/// Whether the rings of the field are those that the profile was given. Errors: invalid_argument,
+/// saying which are not.
+Status check_density_profile(const DensityProfile& profile, const Field& field);
+
 struct DenseSettings {
   DenseStrategy strategy = DenseStrategy::best;
+  /// Lines of sight that are those of a row of the profile's sensor see what that row would have
+  /// measured. One that does not fit the field (see above) is left aside.
+  std::shared_ptr<const DensityProfile> profile{};
 };
 
 /// The field of a decoded scan made to be asked between its rows and columns. On its own cells it

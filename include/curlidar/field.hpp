@@ -119,6 +119,8 @@ class Field {
   virtual std::vector<Vec3> cell_points() const;
   /// What the coded ranges of a row have added to those of cell_points, metres.
   virtual double ring_offset_m(std::uint32_t row) const;
+  /// What coded ranges are rounded to, metres; 0: nothing is known of that.
+  virtual double step_m() const { return 0; }
   /// How a fractional row looks in that frame.
   virtual RowLine row_line(double row) const;
   /// Whether motion_at() is anything but no motion.

@@ -308,6 +308,10 @@ std::vector<Vec3> CompactField::cell_points() const {
   return points;
 }
 
+double CompactField::step_m() const {
+  return static_cast<double>(scan_.parameters.step) / compact::kRangeUnit;
+}
+
 double CompactField::ring_offset_m(std::uint32_t row) const {
   return scan_.table.range_offset.empty() ? 0 : metres(scan_.table.range_offset[row]);
 }

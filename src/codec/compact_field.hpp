@@ -39,6 +39,7 @@ class CompactField : public Field {
   std::size_t nearest_cell(double row, double column) const override;
   std::vector<Vec3> cell_points() const override;
   double ring_offset_m(std::uint32_t row) const override;
+  double step_m() const override;
   RowLine row_line(double row) const override;
   bool moves() const override { return rays_ && !scan_.table.rays->motion.none(); }
   RigidMotion motion_at(double azimuth) const override;

@@ -50,11 +50,14 @@ void add_sources(const RingLook& ring, double share, std::size_t at, Sources& so
 
 }  // namespace
 
-DenseField::DenseField(std::shared_ptr<const Field> field, const DenseSettings&)
+DenseField::DenseField(std::shared_ptr<const Field> field, const DenseSettings& settings)
     : field_(std::move(field)),
       points_(*field_),
       motion_(*field_),
-      noise_m_(ring_noise_m(points_)) {}
+      errors_(errors_of(points_, *field_)),
+      profile_(settings.profile) {
+  if (profile_ && check_rows(*profile_, points_)) rows_.emplace(points_, *profile_);
+}
 
 DenseField::Found DenseField::find_in_plane(const PlaneLine& line) const {
   Found found;
@@ -92,11 +95,33 @@ DenseField::Found DenseField::find(const Sightline& line) const {
 RangeEstimate DenseField::estimate(const Sightline& line) const {
   RangeEstimate estimate;
   if (!is_sight(line) || points_.empty()) return estimate;
-  const Found found = find({line.origin, unit(line.direction)});
+  Found found = find({line.origin, unit(line.direction)});
+  estimate.confidence = confidence_of(found);
+  judge(found);
   if (found.guess.r > 0) estimate.range_m = found.guess.r;
   estimate.seen = found.guess.seen;
-  estimate.confidence = plain_confidence(found.look, found.guess, noise_m_);
   return estimate;
+}
+
+float DenseField::confidence_of(const Found& found) const {
+  if (!(found.guess.r > 0)) return 0;
+  const bool own = profile_ && !profile_->confidence.empty();
+  const ObliviousTrees& trees = own ? profile_->confidence : generic_confidence();
+  if (trees.empty()) return plain_confidence(found.look, found.guess, errors_.noise_m);
+  const PlainFeatures features = plain_features(points_, found.look, found.guess, errors_);
+  return static_cast<float>(probability_of(trees(features)));
+}
+
+void DenseField::judge(Found& found) const {
+  if (!rows_ || !(found.guess.r > 0)) return;
+  const PlaneLine& line = found.look.line;
+  const double rho = line.from.rho + found.guess.r * line.along.rho;
+  const double z = line.from.z + found.guess.r * line.along.z;
+  const auto row = rows_->row_of(std::atan2(z, rho), std::hypot(rho, z));
+  if (!row) return;
+  RowGuess judged{found.look, found.guess};
+  rows_->judge(*row, judged);
+  found.guess = judged.guess;
 }
 
 void DenseField::range_along(std::span<const Sightline> lines, std::span<RangeEstimate> estimates,
@@ -150,6 +175,10 @@ Sources DenseField::sources_at(const Vec3& point) const {
   add_sources(found.look.above, found.guess.above_share, 0, sources);
   add_sources(found.look.below, 1 - found.guess.above_share, 2, sources);
   return sources;
+}
+
+Status check_density_profile(const DensityProfile& profile, const Field& field) {
+  return check_rows(profile, RingPoints(field));
 }
 
 std::shared_ptr<const Field> dense_field(std::shared_ptr<const Field> field,

@@ -4,13 +4,16 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "curlidar/dense.hpp"
+#include "dense/features.hpp"
 #include "dense/look.hpp"
 #include "dense/motion_table.hpp"
 #include "dense/ring_points.hpp"
+#include "dense/row_rules.hpp"
 #include "dense/rules.hpp"
 
 namespace curlidar {
@@ -38,6 +41,7 @@ class DenseField final : public Field {
   }
   std::vector<Vec3> cell_points() const override { return field_->cell_points(); }
   double ring_offset_m(std::uint32_t row) const override { return field_->ring_offset_m(row); }
+  double step_m() const override { return field_->step_m(); }
   RowLine row_line(double row) const override { return field_->row_line(row); }
   bool moves() const override { return field_->moves(); }
   RigidMotion motion_at(double azimuth) const override { return field_->motion_at(azimuth); }
@@ -53,12 +57,17 @@ class DenseField final : public Field {
   Found find(const Sightline& line) const;
   Found find_in_plane(const PlaneLine& line) const;
   RangeEstimate estimate(const Sightline& line) const;
+  float confidence_of(const Found& found) const;
+  /// What the profile says of it, if the line is that of a row.
+  void judge(Found& found) const;
   double on_row(double row, double column, bool masked) const;
 
   std::shared_ptr<const Field> field_;
   RingPoints points_;
   MotionTable motion_;
-  double noise_m_ = 0;  ///< of the samples, for confidence
+  ScanErrors errors_;
+  std::shared_ptr<const DensityProfile> profile_;
+  std::optional<RowRules> rows_;  ///< where the profile fits
 };
 
 }  // namespace curlidar

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/try.hpp"
+#include "curlidar/io.hpp"
 #include "dense/embedded_density.hpp"
 #include "sensor/angles.hpp"
 
@@ -36,6 +37,16 @@ Status validate_table(const NamedTable& named, std::size_t rows) {
     }
   }
   return {};
+}
+
+Status validate_trees(const char* name, const ObliviousTrees& trees, std::size_t features) {
+  if (trees.empty()) return {};
+  Status status = validate(trees);
+  if (status && trees.features() == features) return {};
+  return Error{ErrorCode::invalid_argument,
+               fmt::format("trees of {}: {}", name,
+                           status ? fmt::format("cuts of {} features are meant", features)
+                                  : status.error().message)};
 }
 
 }  // namespace
@@ -82,9 +93,11 @@ Status validate(const DensityProfile& profile) {
       return invalid(status.error().message);
     }
   }
-  for (const ObliviousTrees* trees : {&profile.returns, &profile.residual, &profile.confidence}) {
-    if (trees->empty()) continue;
-    if (Status status = validate(*trees); !status) return invalid(status.error().message);
+  CURLIDAR_TRY(validate_trees("returns", profile.returns, kRowFeatures));
+  CURLIDAR_TRY(validate_trees("residual", profile.residual, kRowFeatures));
+  CURLIDAR_TRY(validate_trees("confidence", profile.confidence, kPlainFeatures));
+  if (!profile.returns.empty() || !profile.residual.empty()) {
+    if (profile.elevation_mdeg.empty()) return invalid("trees of rows need the tables");
   }
   return {};
 }
@@ -94,6 +107,33 @@ std::vector<std::string> builtin_density_names() {
   for (const EmbeddedText& text : embedded_density()) names.emplace_back(text.name);
   std::sort(names.begin(), names.end());
   return names;
+}
+
+const ObliviousTrees& generic_confidence() {
+  static const ObliviousTrees trees = [] {
+    Result<DensityProfile> profile = builtin_density_profile("generic");
+    return profile ? std::move(profile->confidence) : ObliviousTrees{};
+  }();
+  return trees;
+}
+
+Result<std::shared_ptr<const DensityProfile>> load_density_profile(
+    const std::string& name_or_path) {
+  constexpr std::size_t kMostBytes = std::size_t{4} << 20;
+  constexpr std::string_view kEnding = ".toml";
+  if (!name_or_path.ends_with(kEnding)) {
+    CURLIDAR_TRY_ASSIGN(builtin, builtin_density_profile(name_or_path));
+    return std::make_shared<const DensityProfile>(std::move(builtin));
+  }
+  CURLIDAR_TRY_ASSIGN(bytes, read_file(name_or_path));
+  if (bytes.size() > kMostBytes) {
+    return Error{
+        ErrorCode::limit_exceeded,
+        fmt::format("{}: {} bytes are too many for a density profile", name_or_path, bytes.size())};
+  }
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  CURLIDAR_TRY_ASSIGN(read, parse_density_profile(text, name_or_path));
+  return std::make_shared<const DensityProfile>(std::move(read));
 }
 
 Result<DensityProfile> builtin_density_profile(std::string_view name) {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "curlidar/dense.hpp"
 #include "curlidar/result.hpp"
 #include "dense/trees.hpp"
 
@@ -38,6 +39,12 @@ class RangeTable {
  private:
   std::vector<Row> rows_;
 };
+
+/// Numbers that trees of confidence are asked with, which mean the same for every sensor: ratios of
+/// ranges, metres, columns, degrees. src/dense/features.cpp lists them.
+inline constexpr std::size_t kPlainFeatures = 60;
+/// Those, and what a profile knows of the row, that other trees are asked with.
+inline constexpr std::size_t kRowFeatures = kPlainFeatures + 9;
 
 /// Rows are those of what is to be predicted, from the top: the rings of a sensor, or the rows of
 /// an image. Tables are empty or have them all.
@@ -80,9 +87,9 @@ std::string density_profile_text(const DensityProfile& profile);
 /// line. Errors: corrupt (not TOML), invalid_argument (unknown key, wrong type, bad value).
 Result<DensityProfile> parse_density_profile(std::string_view text, const std::string& where);
 
-/// profiles/density/*.toml, which the library carries, sorted.
-std::vector<std::string> builtin_density_names();
 /// Errors: not_found.
 Result<DensityProfile> builtin_density_profile(std::string_view name);
+/// The trees of confidence that suit every sensor. Read once.
+const ObliviousTrees& generic_confidence();
 
 }  // namespace curlidar

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dense/confidence.hpp"
 #include "sensor/angles.hpp"
 
 namespace curlidar {
@@ -93,8 +94,21 @@ int kind(DenseMode mode) {
 
 }  // namespace
 
+ScanErrors errors_of(const RingPoints& points) {
+  return {.noise_m = ring_noise_m(points)};
+}
+
+ScanErrors errors_of(const RingPoints& points, const Field& field) {
+  double squares = 0;
+  const std::uint32_t rows = field.lattice().rows();
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    squares += field.ring_offset_m(row) * field.ring_offset_m(row);
+  }
+  return {ring_noise_m(points), field.step_m(), std::sqrt(squares / rows)};
+}
+
 PlainFeatures plain_features(const RingPoints& points, const Look& look, const Guess& guess,
-                             double noise_m) {
+                             const ScanErrors& errors) {
   PlainFeatures features{};
   Filler to(features);
   const RingLook &above = look.above, &below = look.below;
@@ -109,7 +123,10 @@ PlainFeatures plain_features(const RingPoints& points, const Look& look, const G
   to.add(look.gap * r);
   to.add(r);
   to.add(points.column_step() * r);
-  to.add(noise_m);
+  to.add(errors.noise_m);
+  to.add(errors.step_m);
+  to.add(errors.offset_m);
+  to.add(plain_confidence(look, guess, errors.noise_m));
   to.add(guess.doubt);
   to.add(look.line.from.z + r * look.line.along.z);
   to.add(above.place.z);
@@ -132,7 +149,7 @@ PlainFeatures plain_features(const RingPoints& points, const Look& look, const G
   to.add(nearest_ratio(row_below, r));
   add_row(to, above, row_above, r);
   add_row(to, below, row_below, r);
-  static_assert(kPlainFeatures == 19 + 4 + 4 + 2 * 14 + 2);
+  static_assert(kPlainFeatures == 22 + 4 + 4 + 2 * 14 + 2);
   to.add(std::min(above.near, below.near));
   to.add(row_above.count(1) + row_below.count(1));
   return features;

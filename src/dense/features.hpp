@@ -13,17 +13,22 @@
 
 namespace curlidar {
 
-/// Numbers that mean the same for every sensor: ratios of ranges, metres, columns, degrees.
-inline constexpr std::size_t kPlainFeatures = 57;
-/// Those, and what a profile knows of the row.
-inline constexpr std::size_t kRowFeatures = kPlainFeatures + 9;
+/// What a scan as a whole tells of its errors, metres.
+struct ScanErrors {
+  double noise_m = 0;   ///< ring_noise_m() of its rings
+  double step_m = 0;    ///< of the coded ranges; 0: not coded
+  double offset_m = 0;  ///< root mean square of what rings measured too far or too near
+};
+ScanErrors errors_of(const RingPoints& points);
+/// The points are the field's.
+ScanErrors errors_of(const RingPoints& points, const Field& field);
 
 using PlainFeatures = std::array<float, kPlainFeatures>;
 using RowFeatures = std::array<float, kRowFeatures>;
 
-/// `noise_m` is ring_noise_m() of the points. About 0.5 us.
+/// About 0.5 us.
 PlainFeatures plain_features(const RingPoints& points, const Look& look, const Guess& guess,
-                             double noise_m);
+                             const ScanErrors& errors);
 
 /// `row` is one of the profile's; the profile has tables, and the rings are its given rows.
 RowFeatures row_features(const PlainFeatures& plain, const DensityProfile& profile, std::size_t row,

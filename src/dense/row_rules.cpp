@@ -4,12 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dense/confidence.hpp"
+#include <fmt/format.h>
+
+#include "sensor/angles.hpp"
 
 namespace curlidar {
 namespace {
 
 constexpr double kSomewhere_m = 20;  ///< where a row is looked for before anything is found
+
+/// Rings may look so much beside what a profile says even if rows lie closely.
+constexpr double kSomeAngle = 1e-3;
 
 PlaneLine line_at(double azimuth, double elevation) {
   return {azimuth, {0, 0}, {std::cos(elevation), std::sin(elevation)}};
@@ -21,11 +26,37 @@ bool on_one_surface(const Guess& guess) {
 
 }  // namespace
 
+Status check_rows(const DensityProfile& profile, const RingPoints& points) {
+  const auto invalid = [&](std::string what) {
+    return Error{ErrorCode::invalid_argument,
+                 fmt::format("density profile \"{}\": {}", profile.name, what)};
+  };
+  if (profile.elevation_mdeg.empty()) return invalid("there are no tables of rows in it");
+  const std::size_t given =
+      (profile.rows - profile.given_first + profile.given_every - 1) / profile.given_every;
+  if (given != points.rings()) {
+    return invalid(fmt::format("it is for {} rings, not for {}", given, points.rings()));
+  }
+  for (std::size_t ring = 0; ring < given; ++ring) {
+    const std::size_t row = profile.given_first + ring * profile.given_every;
+    const double wanted = profile.elevation(row, kSomewhere_m);
+    const double elevation = points.elevations()[ring];
+    const double is = std::atan2(points.height_m(ring) + kSomewhere_m * std::sin(elevation),
+                                 kSomewhere_m * std::cos(elevation));
+    const double step = std::abs(
+        profile.elevation(row + 1 < profile.rows ? row + 1 : row - 1, kSomewhere_m) - wanted);
+    if (std::abs(is - wanted) <= std::max(step / 2, kSomeAngle)) continue;
+    return invalid(fmt::format("ring {} looks up by {:.3f} degrees, not {:.3f}", ring,
+                               degrees_of(is), degrees_of(wanted)));
+  }
+  return {};
+}
+
 RowRules::RowRules(const RingPoints& points, const DensityProfile& profile)
-    : points_(points), profile_(profile), noise_m_(ring_noise_m(points)) {}
+    : points_(points), profile_(profile), errors_(errors_of(points)) {}
 
 RowFeatures RowRules::features(std::size_t row, const RowGuess& found) const {
-  return row_features(plain_features(points_, found.look, found.guess, noise_m_), profile_, row,
+  return row_features(plain_features(points_, found.look, found.guess, errors_), profile_, row,
                       found.look, found.guess);
 }
 

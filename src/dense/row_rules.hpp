@@ -20,6 +20,9 @@ struct RowGuess {
   double returns = 0;  ///< probability of a return
 };
 
+/// Whether rings are the given rows of a profile with tables. Errors: invalid_argument.
+Status check_rows(const DensityProfile& profile, const RingPoints& points);
+
 /// The rings are the given rows of the profile, which has tables; both must outlive this.
 class RowRules {
  public:
@@ -44,7 +47,7 @@ class RowRules {
 
   const RingPoints& points_;
   const DensityProfile& profile_;
-  double noise_m_ = 0;
+  ScanErrors errors_;
 };
 
 }  // namespace curlidar

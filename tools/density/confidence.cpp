@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dense/confidence.hpp"
 #include "dense/features.hpp"
 
 namespace curlidar::density {
@@ -20,13 +19,13 @@ PlaneLine line_to(const Vec3& direction) {
 
 void add_answers(const AskedScan& scan, Samples& samples) {
   const RingPoints points(*scan.field);
-  const double noise_m = ring_noise_m(points);
+  const ScanErrors errors = errors_of(points, *scan.field);
   samples.values.resize(kPlainFeatures);
   for (const AskedScan::Place& place : scan.places) {
     const Look look = look_along(points, line_to(place.direction));
     const Guess guess = decide(points, look);
     if (!(guess.r > 0)) continue;
-    const PlainFeatures features = plain_features(points, look, guess, noise_m);
+    const PlainFeatures features = plain_features(points, look, guess, errors);
     for (std::size_t i = 0; i < features.size(); ++i) samples.values[i].push_back(features[i]);
     const bool right = place.range_m > 0 && std::abs(guess.r - place.range_m) <= kRight_m;
     samples.wanted.push_back(right ? 1 : 0);

@@ -10,7 +10,6 @@
 
 #include "base/try.hpp"
 #include "codec/beam_tables.hpp"
-#include "curlidar/io.hpp"
 #include "dense/row_rules.hpp"
 #include "report/measure/inputs.hpp"
 #include "report/measure/json.hpp"
@@ -120,13 +119,6 @@ Image predict(const RingPoints& points, const DensityProfile& profile) {
   return image;
 }
 
-/// The file of a profile, or the name of a built-in one.
-Result<DensityProfile> read_profile(const std::string& name) {
-  if (name.find('.') == std::string::npos) return builtin_density_profile(name);
-  CURLIDAR_TRY_ASSIGN(bytes, read_file(name));
-  return parse_density_profile({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name);
-}
-
 Json to_json(const tulip::Scores& s) {
   return {{"mae_m", s.mae_m},
           {"both_valid_mae_m", s.both_valid_mae_m},
@@ -162,7 +154,8 @@ Status upsampling(const Arguments& arguments) {
   const DensityProfile nominal = nominal_rows();
   CURLIDAR_TRY(print_scores("rules", predict(rings_of(given, nominal), nominal), truth));
   if (const std::string name = arguments.option("profile", ""); !name.empty()) {
-    CURLIDAR_TRY_ASSIGN(profile, read_profile(name));
+    CURLIDAR_TRY_ASSIGN(loaded, load_density_profile(name));
+    const DensityProfile& profile = *loaded;
     if (profile.rows != kRows || profile.given_first != nominal.given_first ||
         profile.given_every != kEvery) {
       return Error{ErrorCode::invalid_argument,

@@ -11,9 +11,10 @@ namespace {
 
 using testing::HasSubstr;
 
-ObliviousTrees some_trees() {
+ObliviousTrees some_trees(std::size_t features) {
   ObliviousTrees trees;
   trees.cuts = {{-1.5f, .1f, 3e-7f + 1}, {}, {0}};
+  trees.cuts.resize(features);
   trees.depth = 3;
   trees.splits = {{0, 1}, {2, 0}, {0, 2}, {1, 0}, {0, 0}, {2, 0}};
   for (int i = 0; i < 16; ++i) trees.leaves.push_back(static_cast<std::int16_t>(i * 2000 - 16000));
@@ -39,8 +40,8 @@ DensityProfile some_profile() {
       profile.bias_mm.row(row)[bin] = static_cast<std::int16_t>(-number);
     }
   }
-  profile.returns = some_trees();
-  profile.confidence = some_trees();
+  profile.returns = some_trees(kRowFeatures);
+  profile.confidence = some_trees(kPlainFeatures);
   return profile;
 }
 
@@ -100,6 +101,9 @@ TEST(DensityProfile, MistakesAreNamedWithTheirLine) {
               HasSubstr("2 leaves, not 1"));
   EXPECT_THAT(why_not("[trees.returns]\ndepth = 1\nbase = 0\nunit = 1\ncuts = [[1e300]]\n"),
               HasSubstr("line 5: cuts"));
+  EXPECT_THAT(why_not("[trees.confidence]\ndepth = 1\nbase = 0\nunit = 1\ncuts = [[0]]\n"
+                      "splits = [[0, 0]]\nleaves = [[1, 2]]"),
+              HasSubstr("features are meant"));
   EXPECT_THAT(why_not("[trees.wisdom]\ndepth = 1"), HasSubstr("unknown key \"wisdom\""));
   EXPECT_THAT(why_not("trees = 7"), HasSubstr("trees must be a table"));
   EXPECT_THAT(why_not("[="), HasSubstr("not TOML"));
