@@ -77,14 +77,14 @@ class ContinuousTest(unittest.TestCase):
 
     def test_quick_runs_measure_less(self):
         context = FakeContext(lines_of, quick=True)
-        continuous.measure(context)
+        continuous.measure_lines(context)
         self.assertEqual(len(context.asked), 2 + 2 + 1 + 2)  # K = 2 asked again
         self.assertIn("2,8", context.asked[0])
         self.assertNotIn("--baseline", context.asked[0])
 
     def test_scenes_are_not_those_that_anything_was_trained_on(self):
         context = FakeContext(lines_of)
-        continuous.measure(context)
+        continuous.measure_lines(context)
         for command in context.asked[:3]:
             self.assertEqual(command[command.index("--seed") + 1], str(continuous.SEED))
 

@@ -45,14 +45,18 @@ def scenes_of(context):
 
 
 def measure(context):
+    from sections import continuous_pictures  # needs numpy
+    measure_lines(context)
+    continuous_pictures.measure(context, drawn_items(context))
+
+
+def measure_lines(context):
     for scene in scenes_of(context):
         truth_of(context, scene)
     for scan in context.scans:
         for every in HELD_OUT:
             held_out_of(context, scan, every)
     borders_of(context)
-    from sections import continuous_pictures
-    continuous_pictures.measure(context, drawn_items(context))
 
 
 def drawn_items(context):
