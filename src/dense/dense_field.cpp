@@ -56,7 +56,12 @@ DenseField::DenseField(std::shared_ptr<const Field> field, const DenseSettings& 
       motion_(*field_),
       errors_(errors_of(points_, *field_)),
       profile_(settings.profile) {
-  if (profile_ && check_rows(*profile_, points_)) rows_.emplace(points_, *profile_);
+  if (!profile_ || !check_rows(*profile_, points_)) return;
+  std::vector<double> offset_m;
+  for (std::size_t ring = 0; ring < points_.rings(); ++ring) {
+    offset_m.push_back(field_->ring_offset_m(points_.row(ring)));
+  }
+  rows_.emplace(points_, *profile_, std::move(offset_m));
 }
 
 DenseField::Found DenseField::find_in_plane(const PlaneLine& line) const {

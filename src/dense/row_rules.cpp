@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -52,8 +53,12 @@ Status check_rows(const DensityProfile& profile, const RingPoints& points) {
   return {};
 }
 
-RowRules::RowRules(const RingPoints& points, const DensityProfile& profile)
-    : points_(points), profile_(profile), errors_(errors_of(points)) {}
+RowRules::RowRules(const RingPoints& points, const DensityProfile& profile,
+                   std::vector<double> offset_m)
+    : points_(points),
+      profile_(profile),
+      errors_(errors_of(points)),
+      offset_m_(std::move(offset_m)) {}
 
 RowFeatures RowRules::features(std::size_t row, const RowGuess& found) const {
   return row_features(plain_features(points_, found.look, found.guess, errors_), profile_, row,
@@ -96,10 +101,19 @@ void RowRules::judge(std::size_t row, RowGuess& found) const {
   found.returns = profile_.returns.empty() ? returns_by_tables(row, found)
                                            : probability_of(profile_.returns(asked));
   if (on_one_surface(guess)) {
-    guess.r += profile_.bias_m(row, guess.r);
+    guess.r += raw_offset_m(found) + profile_.bias_m(row, guess.r);
     if (!profile_.residual.empty()) guess.r *= 1 + profile_.residual(asked);
   }
   guess.seen = found.returns >= 0.5 ? Seen::surface : Seen::nothing;
+}
+
+double RowRules::raw_offset_m(const RowGuess& found) const {
+  if (offset_m_.empty()) return 0;
+  const auto of = [&](const RingLook& ring) {
+    return ring.ring >= 0 ? offset_m_[static_cast<std::size_t>(ring.ring)] : 0;
+  };
+  const double share = found.guess.above_share;
+  return (1 - share) * of(found.look.below) + share * of(found.look.above);
 }
 
 double RowRules::returns_by_tables(std::size_t row, const RowGuess& found) const {

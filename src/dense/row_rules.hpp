@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "dense/density_profile.hpp"
 #include "dense/features.hpp"
@@ -26,7 +27,9 @@ Status check_rows(const DensityProfile& profile, const RingPoints& points);
 /// The rings are the given rows of the profile, which has tables; both must outlive this.
 class RowRules {
  public:
-  RowRules(const RingPoints& points, const DensityProfile& profile);
+  /// `offset_m`: what the rings measured too far and the points have no more; none: nothing.
+  RowRules(const RingPoints& points, const DensityProfile& profile,
+           std::vector<double> offset_m = {});
 
   /// What the rules say along a row as seen from the origin, before the profile's say. The
   /// elevation is that at which the row would see what is found.
@@ -43,11 +46,14 @@ class RowRules {
   std::optional<std::size_t> row_of(double elevation, double range_m) const;
 
  private:
+  /// What must be added to a range so that it is as if interpolated between raw returns.
+  double raw_offset_m(const RowGuess& found) const;
   double returns_by_tables(std::size_t row, const RowGuess& found) const;
 
   const RingPoints& points_;
   const DensityProfile& profile_;
   ScanErrors errors_;
+  std::vector<double> offset_m_;
 };
 
 }  // namespace curlidar

@@ -26,12 +26,13 @@ using namespace curlidar::density;
 struct Options {
   std::string kind, list, out, without, cache, name = "density", description;
   TreeSettings trees;
-  std::size_t confidence_trees = 80, places = 2000, seeds = 2, threads = 1;
+  std::size_t confidence_trees = 80, places = 2000, seeds = 2, threads = 1, every = 4;
 };
 
 constexpr const char* kUsage =
     "usage: density image LIST OUT.toml [--return-trees N] [--residual-trees N] [--depth N]\n"
     "               [--residual-depth N] [--sample K]\n"
+    "       density rings LIST OUT.toml [--every K] and the options of image\n"
     "       density confidence LIST OUT.toml [--confidence-trees N] [--depth N] [--places N]\n"
     "               [--seeds N] [--cache FOLDER]\n"
     "both: [--without GROUP] [--name N] [--description D] [--threads N]\n"
@@ -61,6 +62,7 @@ Result<Options> parse(const std::vector<std::string>& words) {
       {"--residual-depth", &options.trees.residual_depth},
       {"--sample", &options.trees.every},
       {"--confidence-trees", &options.confidence_trees},
+      {"--every", &options.every},
       {"--places", &options.places},
       {"--seeds", &options.seeds},
       {"--threads", &options.threads}};
@@ -101,17 +103,23 @@ Status write_profile(const Options& options, DensityProfile profile) {
   return {};
 }
 
-Status run_image(const Options& options) {
+Status run_rows(const Options& options) {
   CURLIDAR_TRY_ASSIGN(list, read_list(options.list));
+  const bool image = options.kind == "image";
   std::vector<RowScan> scans;
   for (const auto& [group, path] : list) {
     if (group == options.without) continue;
     CURLIDAR_TRY_ASSIGN(own, read_own_frame(path));
-    scans.push_back(image_rows(own));
+    CURLIDAR_TRY_ASSIGN(scan, image ? image_rows(own) : ring_rows(own));
+    scans.push_back(std::move(scan));
+    if (scans.back().elevations.size() != scans.front().elevations.size()) {
+      return Error{ErrorCode::invalid_argument, path + ": not as many rings as in the others"};
+    }
   }
   if (scans.empty()) return Error{ErrorCode::invalid_argument, "no scan is left to learn from"};
-  // Rows 0, 4, .. 60 from below of 64.
-  DensityProfile profile = fit_tables(scans, {.first = 3, .every = 4});
+  // Of an image rows 0, 4, .. 60 from below of 64; of a sensor rings from the top.
+  const GivenRows given = image ? GivenRows{3, 4} : GivenRows{0, options.every};
+  DensityProfile profile = fit_tables(scans, given);
   if (options.trees.return_trees > 0 || options.trees.residual_trees > 0) {
     fit_trees(scans, options.trees, profile, options.threads);
   }
@@ -181,7 +189,7 @@ Status run_confidence(const Options& options) {
 }
 
 Status run(const Options& options) {
-  if (options.kind == "image") return run_image(options);
+  if (options.kind == "image" || options.kind == "rings") return run_rows(options);
   if (options.kind == "confidence") return run_confidence(options);
   return Error{ErrorCode::invalid_argument, kUsage};
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "density/row_scan.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "base/try.hpp"
@@ -10,6 +13,25 @@
 #include "sensor/own_frame.hpp"
 
 namespace curlidar::density {
+namespace {
+
+/// Cells without a return on the columns that are missing between a ring's returns.
+void add_missing(const std::vector<RowCell>& ring, std::uint32_t columns,
+                 std::vector<RowCell>& cells) {
+  constexpr double kApart = 1.8;  // columns: returns beside each other are nearer
+  const double column = 2 * std::numbers::pi / columns;
+  for (std::size_t i = 0; i + 1 < ring.size(); ++i) {
+    const double wide = ring[i + 1].azimuth - ring[i].azimuth;
+    if (wide < kApart * column) continue;
+    const auto missing = static_cast<int>(std::lround(wide / column));
+    for (int k = 1; k < missing; ++k) {
+      const double azimuth = ring[i].azimuth + wide * k / missing;
+      cells.push_back({ring[i].row, static_cast<float>(azimuth), 0, 0});
+    }
+  }
+}
+
+}  // namespace
 
 Result<Cloud> read_own_frame(const std::string& path) {
   CURLIDAR_TRY_ASSIGN(cloud, read_cloud(path));
@@ -18,7 +40,7 @@ Result<Cloud> read_own_frame(const std::string& path) {
   return fit ? in_own_frame(cloud, *fit) : std::move(cloud);
 }
 
-RowScan image_rows(const Cloud& own) {
+Result<RowScan> image_rows(const Cloud& own) {
   namespace tulip = bench::tulip;
   RowScan scan;
   for (std::size_t row = 0; row < tulip::kRows; ++row) {
@@ -37,6 +59,32 @@ RowScan image_rows(const Cloud& own) {
     scan.cells.push_back({static_cast<std::uint16_t>(tulip::kRows - 1 - row),
                           static_cast<float>(tulip::azimuth_of_column(static_cast<double>(column))),
                           elevations[cell], static_cast<float>(image.range_m[cell])});
+  }
+  return scan;
+}
+
+Result<RowScan> ring_rows(const Cloud& own) {
+  CURLIDAR_TRY_ASSIGN(detection, detect_sensor(own));
+  if (detection.source == RingSource::uniform) {
+    return Error{ErrorCode::unsupported, "the rings of a scan cannot be told"};
+  }
+  RowScan scan;
+  scan.elevations = detection.ring_elevations;
+  scan.columns = detection.sensor.columns;
+  scan.exact = true;
+  std::vector<std::vector<RowCell>> rings(scan.elevations.size());
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const Vec3& p = own.positions[i];
+    const std::uint16_t ring = detection.ring_of_point[i];
+    if (ring == kNoRing || !is_return(p)) continue;
+    rings[ring].push_back({ring, static_cast<float>(azimuth_of(p)),
+                           static_cast<float>(elevation_of(p)), static_cast<float>(norm(p))});
+  }
+  for (std::vector<RowCell>& ring : rings) {
+    std::sort(ring.begin(), ring.end(),
+              [](const RowCell& a, const RowCell& b) { return a.azimuth < b.azimuth; });
+    scan.cells.insert(scan.cells.end(), ring.begin(), ring.end());
+    add_missing(ring, scan.columns, scan.cells);
   }
   return scan;
 }

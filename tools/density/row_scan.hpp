@@ -34,7 +34,11 @@ struct RowScan {
 Result<Cloud> read_own_frame(const std::string& path);
 
 /// The cells of the 64 x 1024 image of TULIP's protocol, bench/report/measure/tulip.hpp.
-RowScan image_rows(const Cloud& own);
+Result<RowScan> image_rows(const Cloud& own);
+
+/// The returns of a sensor's rings, and the columns missing between them. Errors: those of
+/// detect_sensor(); unsupported where no rings are found.
+Result<RowScan> ring_rows(const Cloud& own);
 
 /// The returns of the given rows, or of the others, on their rings; where elevations are not known
 /// they are the profile's.
