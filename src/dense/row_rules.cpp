@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "curlidar/cloud.hpp"
 #include "sensor/angles.hpp"
 
 namespace curlidar {
@@ -25,6 +26,25 @@ bool on_one_surface(const Guess& guess) {
   return guess.mode == DenseMode::smooth || guess.mode == DenseMode::planar;
 }
 
+/// Angle to the next row.
+double row_step(const DensityProfile& profile, std::size_t row) {
+  if (profile.rows < 2) return 0;
+  const std::size_t other = row + 1 < profile.rows ? row + 1 : row - 1;
+  return std::abs(profile.elevation(other, kSomewhere_m) - profile.elevation(row, kSomewhere_m));
+}
+
+/// How far above a row the returns of a ring lie, radians; 0 if there are none.
+double median_beside(const DensityProfile& profile, std::size_t row,
+                     std::span<const RingPoint> ring) {
+  constexpr std::size_t kMost = 200;
+  std::vector<double> beside;
+  for (std::size_t i = 0; i < ring.size(); i += ring.size() / kMost + 1) {
+    const double r = std::hypot(ring[i].rho, ring[i].z);
+    beside.push_back(std::atan2(ring[i].z, ring[i].rho) - profile.elevation(row, r));
+  }
+  return beside.empty() ? 0 : percentile(beside, 0.5);
+}
+
 }  // namespace
 
 Status check_rows(const DensityProfile& profile, const RingPoints& points) {
@@ -40,15 +60,10 @@ Status check_rows(const DensityProfile& profile, const RingPoints& points) {
   }
   for (std::size_t ring = 0; ring < given; ++ring) {
     const std::size_t row = profile.given_first + ring * profile.given_every;
-    const double wanted = profile.elevation(row, kSomewhere_m);
-    const double elevation = points.elevations()[ring];
-    const double is = std::atan2(points.height_m(ring) + kSomewhere_m * std::sin(elevation),
-                                 kSomewhere_m * std::cos(elevation));
-    const double step = std::abs(
-        profile.elevation(row + 1 < profile.rows ? row + 1 : row - 1, kSomewhere_m) - wanted);
-    if (std::abs(is - wanted) <= std::max(step / 2, kSomeAngle)) continue;
-    return invalid(fmt::format("ring {} looks up by {:.3f} degrees, not {:.3f}", ring,
-                               degrees_of(is), degrees_of(wanted)));
+    const double beside = median_beside(profile, row, points.ring(ring));
+    if (std::abs(beside) <= std::max(row_step(profile, row) / 2, kSomeAngle)) continue;
+    return invalid(fmt::format("the returns of ring {} lie {:.3f} degrees beside row {}", ring,
+                               degrees_of(beside), row));
   }
   return {};
 }
