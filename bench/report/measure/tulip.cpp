@@ -44,8 +44,8 @@ std::vector<std::array<std::int64_t, 3>> voxels(const Cloud& cloud) {
 }
 
 /// What was predicted, beside what was given.
-Image completed(const Image& predicted, const Image& truth) {
-  Image image = given_rows(truth);
+Image completed(const Image& predicted, const Image& given) {
+  Image image = given_rows(given);
   for (std::size_t row = 0; row < kRows; ++row) {
     if (row % kEvery == 0) continue;
     for (std::size_t column = 0; column < kColumns; ++column) {
@@ -147,9 +147,9 @@ Cloud points_of(const Image& image) {
   return cloud;
 }
 
-Result<Scores> score(const Image& predicted, const Image& truth) {
+Result<Scores> score(const Image& predicted, const Image& given, const Image& truth) {
   Scores scores;
-  const Image image = completed(predicted, truth);
+  const Image image = completed(predicted, given);
   score_cells(image, truth, scores);
   const Cloud is = points_of(image), should = points_of(truth);
   if (is.size() == 0 || should.size() == 0) {

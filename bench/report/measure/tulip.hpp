@@ -55,8 +55,8 @@ struct Scores {
   double completeness = 0;         ///< share of the true returns of predicted rows with a range
 };
 
-/// `predicted` against `truth`; the rows given are taken from the truth, and predictions outside
+/// `predicted` against `truth`; its given rows are those of `given`, and predictions outside
 /// kLeast_m .. kMost_m are none. Errors: invalid_argument (an image without a range).
-Result<Scores> score(const Image& predicted, const Image& truth);
+Result<Scores> score(const Image& predicted, const Image& given, const Image& truth);
 
 }  // namespace curlidar::bench::tulip

@@ -11,6 +11,7 @@
 #include "base/try.hpp"
 #include "codec/beam_tables.hpp"
 #include "dense/row_rules.hpp"
+#include "report/measure/codecs.hpp"
 #include "report/measure/inputs.hpp"
 #include "report/measure/json.hpp"
 #include "report/measure/tulip.hpp"
@@ -70,23 +71,64 @@ double edge_aware(double below, double above, double up) {
 }
 
 /// The given rows as rings, from the top; elevations are the profile's, or the rows' own.
-RingPoints rings_of(const Image& given, const DensityProfile& profile) {
-  std::vector<Vec3> positions;
+struct GivenRings {
+  Cloud cloud;
   std::vector<std::uint16_t> ring_of_point;
   std::vector<double> elevations;
+
+  RingPoints points() const { return {cloud.positions, ring_of_point, elevations, kColumns}; }
+};
+
+GivenRings rings_of(const Image& given, const DensityProfile& profile) {
+  GivenRings rings;
   for (std::size_t row = profile.given_first; row < kRows; row += kEvery) {
     const std::size_t image_row = kRows - 1 - row;
     for (std::size_t column = 0; column < kColumns; ++column) {
       const double range = given.at(image_row, column);
       if (!(range > 0)) continue;
-      positions.push_back(direction_of(profile.elevation(row, range),
-                                       tulip::azimuth_of_column(static_cast<double>(column))) *
-                          range);
-      ring_of_point.push_back(static_cast<std::uint16_t>(elevations.size()));
+      const double azimuth = tulip::azimuth_of_column(static_cast<double>(column));
+      rings.cloud.positions.push_back(direction_of(profile.elevation(row, range), azimuth) * range);
+      rings.ring_of_point.push_back(static_cast<std::uint16_t>(rings.elevations.size()));
     }
-    elevations.push_back(tulip::elevation_of_row(static_cast<double>(image_row)));
+    rings.elevations.push_back(tulip::elevation_of_row(static_cast<double>(image_row)));
   }
-  return {positions, ring_of_point, std::move(elevations), kColumns};
+  rings.cloud.width = static_cast<std::uint32_t>(rings.cloud.size());
+  return rings;
+}
+
+/// The given rows as a compact file at 1 bit a point has them.
+struct CodedRings {
+  std::shared_ptr<const Field> field;
+  double bits_per_point = 0;
+};
+
+Result<CodedRings> code(const GivenRings& rings) {
+  EncodeSettings settings = compact_of_scan(CompactTarget::bits_per_point, 1);
+  settings.sensor.emplace();
+  settings.sensor->name = "image-16";
+  settings.sensor->columns = kColumns;
+  for (const double elevation : rings.elevations) {
+    settings.sensor->rings.push_back({.elevation = elevation});
+  }
+  settings.sensor->fov_up = rings.elevations.front();
+  settings.sensor->fov_down = rings.elevations.back();
+  CURLIDAR_TRY_ASSIGN(encoded, encode(rings.cloud, settings));
+  CURLIDAR_TRY_ASSIGN(decoded, decode(encoded.bytes));
+  return CodedRings{decoded.field, encoded.report.bits_per_point};
+}
+
+/// The given rows as an image again.
+Image image_of(const RingPoints& points) {
+  Image image;
+  for (std::size_t ring = 0; ring < points.rings(); ++ring) {
+    const std::size_t row = kRows - kEvery - ring * kEvery;
+    for (const RingPoint& p : points.ring(ring)) {
+      const double turned = (p.azimuth / (2 * std::numbers::pi) + 0.5) * kColumns;
+      const auto column = static_cast<std::size_t>(std::lround(turned) + kColumns - 1) % kColumns;
+      image.at(row, column) = std::hypot(p.rho, p.z);
+    }
+  }
+  return image;
 }
 
 /// What is known without a profile.
@@ -133,8 +175,9 @@ Json to_json(const tulip::Scores& s) {
           {"completeness", s.completeness}};
 }
 
-Status print_scores(const std::string& method, const Image& predicted, const Image& truth) {
-  CURLIDAR_TRY_ASSIGN(scores, tulip::score(predicted, truth));
+Status print_scores(const std::string& method, const Image& predicted, const Image& given,
+                    const Image& truth) {
+  CURLIDAR_TRY_ASSIGN(scores, tulip::score(predicted, given, truth));
   Json line{{"method", method}};
   line.update(to_json(scores));
   print_line(line);
@@ -149,27 +192,31 @@ Status upsampling(const Arguments& arguments) {
   const Image truth = tulip::project(own.cloud);
   const Image given = tulip::given_rows(truth);
   print_line({{"scan", scan.path}, {"motion_undone", own.motion_undone}});
-  CURLIDAR_TRY(print_scores("nearest ring", interpolate(given, nearest_ring), truth));
-  CURLIDAR_TRY(print_scores("edge-aware", interpolate(given, edge_aware), truth));
+  const auto print = [&](const std::string& method, const Image& predicted) {
+    return print_scores(method, predicted, given, truth);
+  };
+  CURLIDAR_TRY(print("nearest ring", interpolate(given, nearest_ring)));
+  CURLIDAR_TRY(print("edge-aware", interpolate(given, edge_aware)));
   const DensityProfile nominal = nominal_rows();
-  CURLIDAR_TRY(print_scores("rules", predict(rings_of(given, nominal), nominal), truth));
-  if (const std::string name = arguments.option("profile", ""); !name.empty()) {
-    CURLIDAR_TRY_ASSIGN(loaded, load_density_profile(name));
-    const DensityProfile& profile = *loaded;
-    if (profile.rows != kRows || profile.given_first != nominal.given_first ||
-        profile.given_every != kEvery) {
-      return Error{ErrorCode::invalid_argument,
-                   name + ": not a profile of 64 rows of which every fourth is given"};
-    }
-    DensityProfile tables = profile;
-    tables.returns = tables.residual = {};
-    const RingPoints points = rings_of(given, profile);
-    CURLIDAR_TRY(print_scores("rules, tables", predict(points, tables), truth));
-    if (!profile.returns.empty()) {
-      CURLIDAR_TRY(print_scores("rules, tables, trees", predict(points, profile), truth));
-    }
+  CURLIDAR_TRY(print("rules", predict(rings_of(given, nominal).points(), nominal)));
+  const std::string name = arguments.option("profile", "");
+  if (name.empty()) return {};
+  CURLIDAR_TRY_ASSIGN(profile, load_density_profile(name));
+  if (profile->rows != kRows || profile->given_first != nominal.given_first ||
+      profile->given_every != kEvery) {
+    return Error{ErrorCode::invalid_argument,
+                 name + ": not a profile of 64 rows of which every fourth is given"};
   }
-  return {};
+  const GivenRings rings = rings_of(given, *profile);
+  DensityProfile tables = *profile;
+  tables.returns = tables.residual = {};
+  CURLIDAR_TRY(print("rules, tables", predict(rings.points(), tables)));
+  CURLIDAR_TRY(print("rules, tables, trees", predict(rings.points(), *profile)));
+  CURLIDAR_TRY_ASSIGN(coded, code(rings));
+  const RingPoints decoded(*coded.field);
+  const Image told = predict(decoded, *profile);
+  CURLIDAR_TRY(print_scores("decoded", told, image_of(decoded), truth));
+  return print("decoded, given rows exact", told);
 }
 
 }  // namespace curlidar::bench
