@@ -24,6 +24,8 @@ constexpr double kFarthest_m = 400;
 constexpr double kGroundSlope = 0.15, kGroundNoise_m = 0.05, kGroundBelow_m = 0.5;
 /// A ground that ends behind something is seen up to it, give or take.
 constexpr double kFoot = 1.02;
+/// Rings no farther apart, as a share, are continued by a plane above the top one too.
+constexpr double kGentle = 0.05;
 /// Upright: out by less than this for each metre up. The ground's plane passes so far behind.
 constexpr double kUpright = 0.25, kFootBehind = 0.03;
 /// Samples look alike in a vote within this.
@@ -222,8 +224,8 @@ double doubt_of(const RingPoints& points, const Look& look, const Guess& guess) 
 }
 
 /// Beyond the outermost rings: theirs, believed for half a step. What lies above the top ring
-/// mostly stands upright, and planes through two rings end in the far: farther up it keeps its
-/// distance.
+/// mostly stands upright, and planes through two rings far apart end in the far: there, and farther
+/// up, it keeps its distance.
 Guess beyond_edge(const RingPoints& points, const Look& look) {
   const bool top = look.above.ring < 0;
   const RingLook& edge = top ? look.below : look.above;
@@ -236,7 +238,8 @@ Guess beyond_edge(const RingPoints& points, const Look& look) {
                                 : elevations[rings - 2] - elevations[rings - 1];
   const bool near = std::abs(look.line.side(edge.place)) <= 0.5 * step * edge.r;
   Guess guess{top ? DenseMode::only_below : DenseMode::only_above, edge.r, top ? 0.0 : 1.0};
-  if ((near || !top) && make_plane(inner, edge)) {
+  const bool gentle = std::abs(inner.r - edge.r) <= kGentle * std::min(inner.r, edge.r);
+  if ((!top || (near && gentle)) && make_plane(inner, edge)) {
     const double there = met(look.line.inverse_to(inner.place, edge.place));
     if (there > edge.r / 2 && there < 2 * edge.r) guess.r = there;
   }
