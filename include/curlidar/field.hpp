@@ -117,6 +117,9 @@ class Field {
   /// The coded returns where the sensor itself saw them: motion of the scan undone, what its rings
   /// measure too far or too near taken away. One for each cell, row-major; NaN in empty ones.
   virtual std::vector<Vec3> cell_points() const;
+  /// The patch that each cell's range was coded with, row-major; empty where there are none. Ranges
+  /// of one patch err together.
+  virtual std::vector<std::int32_t> cell_patches() const { return {}; }
   /// What the coded ranges of a row have added to those of cell_points, metres.
   virtual double ring_offset_m(std::uint32_t row) const;
   /// What coded ranges are rounded to, metres; 0: nothing is known of that.

@@ -38,6 +38,7 @@ class CompactField : public Field {
   }
   std::size_t nearest_cell(double row, double column) const override;
   std::vector<Vec3> cell_points() const override;
+  std::vector<std::int32_t> cell_patches() const override { return scan_.surface; }
   double ring_offset_m(std::uint32_t row) const override;
   double step_m() const override;
   RowLine row_line(double row) const override;

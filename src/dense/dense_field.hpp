@@ -40,6 +40,7 @@ class DenseField final : public Field {
     return field_->nearest_cell(row, column);
   }
   std::vector<Vec3> cell_points() const override { return field_->cell_points(); }
+  std::vector<std::int32_t> cell_patches() const override { return field_->cell_patches(); }
   double ring_offset_m(std::uint32_t row) const override { return field_->ring_offset_m(row); }
   double step_m() const override { return field_->step_m(); }
   RowLine row_line(double row) const override { return field_->row_line(row); }

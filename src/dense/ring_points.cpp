@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "curlidar/cloud.hpp"
+#include "dense/patch_joints.hpp"
 
 namespace curlidar {
 namespace {
@@ -54,7 +55,7 @@ double turn_between(double from, double to) {
 }
 
 RingPoints::RingPoints(const Field& field) : columns_(field.lattice().columns()) {
-  const std::vector<Vec3> points = field.cell_points();
+  const std::vector<Vec3> points = joined_points(field);
   rows_ = from_the_top(field.lattice().elevations());
   std::vector<std::vector<RingPoint>> rings(rows_.size());
   for (std::size_t ring = 0; ring < rings.size(); ++ring) {

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dense/patch_joints.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace curlidar {
+namespace {
+
+constexpr std::size_t kFade = 4;  ///< cells on either side
+constexpr double kMostSteps = 0.5;
+
+/// One row around the turn.
+class Row {
+ public:
+  Row(std::span<Vec3> points, std::span<const std::int32_t> patches, double height_m)
+      : points_(points), patches_(patches), height_m_(height_m) {
+    for (const Vec3& p : points) ranges_.push_back(norm({p.x, p.y, p.z - height_m}));
+  }
+
+  void join(double most_m) {
+    moves_.assign(points_.size(), 0);
+    for (std::size_t cell = 0; cell < points_.size(); ++cell) join_behind(cell, most_m);
+    for (std::size_t cell = 0; cell < points_.size(); ++cell) {
+      if (moves_[cell] == 0) continue;
+      const double by = 1 + std::clamp(moves_[cell], -most_m, most_m) / ranges_[cell];
+      Vec3& p = points_[cell];
+      p = {p.x * by, p.y * by, height_m_ + (p.z - height_m_) * by};
+    }
+  }
+
+ private:
+  /// `steps` cells on from a cell, or back.
+  std::size_t on(std::size_t cell, std::size_t steps) const {
+    return (cell + steps) % points_.size();
+  }
+  std::size_t back(std::size_t cell, std::size_t steps) const {
+    return (cell + points_.size() - steps) % points_.size();
+  }
+  bool of(std::size_t cell, std::int32_t patch) const {
+    return patches_[cell] == patch && patch >= 0 && ranges_[cell] > 0;
+  }
+
+  /// The border behind a cell, if there is one.
+  void join_behind(std::size_t left, double most_m) {
+    const std::size_t right = on(left, 1);
+    const std::int32_t patch = patches_[left], next = patches_[right];
+    if (patch == next || !of(left, patch) || !of(right, next)) return;
+    const std::size_t left2 = back(left, 1), right2 = on(right, 1);
+    if (!of(left2, patch) || !of(right2, next)) return;
+    const double before = ranges_[left] - ranges_[left2];
+    const double behind = ranges_[right2] - ranges_[right];
+    const double step = ranges_[right] - ranges_[left] - (before + behind) / 2;
+    if (std::abs(step) > most_m || std::abs(before - behind) > most_m) return;
+    for (std::size_t away = 0; away < kFade && of(back(left, away), patch); ++away) {
+      moves_[back(left, away)] += step * share(away);
+    }
+    for (std::size_t away = 0; away < kFade && of(on(right, away), next); ++away) {
+      moves_[on(right, away)] -= step * share(away);
+    }
+  }
+
+  static double share(std::size_t away) {
+    return 0.5 * (1 - (static_cast<double>(away) + 0.5) / kFade);
+  }
+
+  std::span<Vec3> points_;
+  std::span<const std::int32_t> patches_;
+  double height_m_;
+  std::vector<double> ranges_, moves_;
+};
+
+}  // namespace
+
+std::vector<Vec3> joined_points(const Field& field) {
+  std::vector<Vec3> points = field.cell_points();
+  const std::vector<std::int32_t> patches = field.cell_patches();
+  const std::size_t columns = field.lattice().columns();
+  if (patches.empty() || columns < 2 * kFade) return points;
+  for (std::uint32_t row = 0; row < field.lattice().rows(); ++row) {
+    const std::span<Vec3> line{points.data() + row * columns, columns};
+    Row cells(line, {patches.data() + row * columns, columns}, field.row_line(row).height_m);
+    cells.join(kMostSteps * field.step_m());
+  }
+  return points;
+}
+
+}  // namespace curlidar
