@@ -55,7 +55,7 @@ void print_method(Json line, const std::vector<RangeEstimate>& told,
   line.update(to_json(limited.errors(told)));
   line["whole"] = to_json(whole.errors(told));
   line["whole"]["equal"] = to_json(whole.equal_cut(told, edge_aware));
-  if (line["method"] == "compact") {
+  if (line["method"] == "compact" || line["method"] == "compact-profile") {
     line["half"] = to_json(whole.most_trusted(told, kHalf));
     line["confidence"] = to_json(whole.confidence(told));
     line["trades"] = to_json(whole.trades(told));
@@ -86,6 +86,11 @@ void print_methods(const std::vector<Method>& methods, const RingSplit& split,
 
 Status held_out(const Arguments& arguments) {
   CURLIDAR_TRY_ASSIGN(every, arguments.number("every", 2, 2, 64));
+  std::shared_ptr<const DensityProfile> profile;
+  if (const std::string name = arguments.option("profile", ""); !name.empty()) {
+    CURLIDAR_TRY_ASSIGN(loaded, load_density_profile(name));
+    profile = std::move(loaded);
+  }
   CURLIDAR_TRY_ASSIGN(scan, read_scan(arguments));
   CURLIDAR_TRY_ASSIGN(detection, scan.settings.sensor
                                      ? assign_rings(scan.cloud, *scan.settings.sensor)
@@ -113,7 +118,8 @@ Status held_out(const Arguments& arguments) {
                     .compact_sensor = split.sensor,  // or it might find the whole sensor again
                     .ring_of_point = split.ring_of_point,
                     .ring_elevations = split.elevations,
-                    .columns = split.sensor.columns});
+                    .columns = split.sensor.columns,
+                    .profile = std::move(profile)});
   print_methods(methods, split, limits);
   return {};
 }

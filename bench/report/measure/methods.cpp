@@ -96,7 +96,16 @@ std::vector<Method> compact_methods(const MethodInput& input) {
     dense.field = dense_field(dense.field);
     dense.sampler = std::make_shared<FieldSampler>(dense.field);
   }
-  return {std::move(dense), std::move(field)};
+  if (!input.profile) return {std::move(dense), std::move(field)};
+  Method profiled = field;
+  profiled.name = "compact-profile";
+  if (field.field) {
+    const Status fits = check_density_profile(*input.profile, *field.field);
+    if (!fits) profiled.skipped = fits.error().message;
+    profiled.field = dense_field(field.field, {.profile = input.profile});
+    profiled.sampler = fits ? std::make_shared<FieldSampler>(profiled.field) : nullptr;
+  }
+  return {std::move(dense), std::move(profiled), std::move(field)};
 }
 
 Method edge_aware_method(const MethodInput& input) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "curlidar/codec.hpp"
+#include "curlidar/dense.hpp"
 #include "report/measure/json.hpp"
 #include "report/measure/sampler.hpp"
 
@@ -37,6 +38,8 @@ struct MethodInput {
   std::vector<std::uint16_t> ring_of_point;
   std::vector<double> ring_elevations;
   std::uint32_t columns = 0;
+  /// Adds "compact-profile": the compact codec's field asked with it.
+  std::shared_ptr<const DensityProfile> profile{};
 };
 
 /// The paper's S = 1x1, 2x1, 2x2, with the other settings as given.
