@@ -154,6 +154,11 @@ class BordersTest(unittest.TestCase):
                          ["no: mean 0.30 D, 7 untrue", "yes"])
         self.assertEqual(len(list(continuous_borders.check([table]))), 1)  # ours is not there
 
+    def test_scans_out_of_reach_have_their_row(self):
+        table = continuous_borders.table({"xt16": [{"skipped": "1 bit is out of reach"}]})
+        self.assertEqual(table.rows[0]["mean_m"], Missing("1 bit is out of reach"))
+        self.assertEqual(list(continuous_borders.check([table])), [])
+
     def test_check_finds_parts_beyond_the_whole(self):
         lines = [{"method": method, "step_m": .1, "borders": {**JUMPS, "untrue": 71},
                   "insides": JUMPS} for method in continuous_borders.METHODS]

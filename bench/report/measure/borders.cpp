@@ -142,13 +142,17 @@ Status print_all(const Cloud& cloud, const std::optional<SensorProfile>& compact
                  const std::function<Knowledge(double step_m)>& knowledge) {
   EncodeSettings settings = compact_of_scan(CompactTarget::bits_per_point, 1);
   settings.sensor = compact_sensor;
-  CURLIDAR_TRY_ASSIGN(field, coded("compact-field", "1 bit a point", cloud, settings));
-  const double step_m = field.step_m;
-  Coded dense = field;
+  const Result<Coded> field = coded("compact-field", "1 bit a point", cloud, settings);
+  if (!field) {
+    print_line({{"skipped", field.error().message}});
+    return {};
+  }
+  const double step_m = field->step_m;
+  Coded dense = *field;
   dense.name = "compact";
-  dense.field = dense_field(field.field);
+  dense.field = dense_field(field->field);
   print_jumps(dense, step_m, knowledge(step_m));
-  print_jumps(field, step_m, knowledge(step_m));
+  print_jumps(*field, step_m, knowledge(step_m));
   CURLIDAR_TRY_ASSIGN(patches, coded("paper", paper_setting(Profile::paper), cloud,
                                      of_profile(paper, paper.profile)));
   print_jumps(patches, step_m, knowledge(step_m));

@@ -39,9 +39,9 @@ def table(measured):
     rows = []
     for name, lines in measured.items():
         for line in lines:
-            if "failure" in line:
-                rows.append({**dict.fromkeys((column.key for column in COLUMNS),
-                                             Missing(line["failure"])), "input": name})
+            if why := line.get("failure", line.get("skipped")):
+                rows.append({**dict.fromkeys((column.key for column in COLUMNS), Missing(why)),
+                             "input": name})
                 continue
             for place, title in PLACES.items():
                 row = {"input": name, "method": METHODS[line["method"]], "place": title,
