@@ -20,8 +20,8 @@ struct GivenRows {
 DensityProfile fit_tables(std::span<const RowScan> scans, const GivenRows& given);
 
 struct TreeSettings {
-  std::size_t return_trees = 60, residual_trees = 40;
-  std::size_t depth = 6, residual_depth = 5;
+  std::size_t return_trees = 40, residual_trees = 0;  ///< 0: none
+  std::size_t depth = 5, residual_depth = 5;
   double residual_damping = 100;
   std::size_t every = 4;  ///< every so-manieth cell is a sample
 };

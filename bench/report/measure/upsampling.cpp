@@ -214,7 +214,7 @@ Status upsampling(const Arguments& arguments) {
   for (const double bits : {1.0, 2.0}) {
     CURLIDAR_TRY_ASSIGN(coded, code(returns, own.sensor, bits));
     const Image told = predict(rings_of(coded.image, *profile).points(), *profile);
-    const std::string method = fmt::format("decoded, {} bit a point", bits);
+    const std::string method = bits == 1 ? "decoded" : fmt::format("decoded at {} bits", bits);
     CURLIDAR_TRY(print_scores(method, told, coded.image, truth));
     CURLIDAR_TRY(print(method + ", given rows exact", told));
   }

@@ -109,6 +109,25 @@ TEST(DensityProfile, MistakesAreNamedWithTheirLine) {
   EXPECT_THAT(why_not("[="), HasSubstr("not TOML"));
 }
 
+TEST(DensityProfile, DamagedTextIsReadAsSomethingValidOrRefused) {
+  const std::string text = density_profile_text(some_profile());
+  std::size_t refused = 0;
+  for (std::size_t i = 0; i < text.size(); i += 7) {
+    std::string damaged = text;
+    damaged[i] = "9-[]\"x,.="[i / 7 % 9];
+    for (const std::string& tried : {damaged, text.substr(0, i)}) {
+      const Result<DensityProfile> read = parse_density_profile(tried, "text");
+      if (read) {
+        EXPECT_TRUE(validate(*read)) << i;
+      } else {
+        ++refused;
+        EXPECT_THAT(read.error().message, testing::StartsWith("text, line ")) << i;
+      }
+    }
+  }
+  EXPECT_GT(refused, text.size() / 20);
+}
+
 TEST(DensityProfile, BuiltInOnesCanBeRead) {
   for (const std::string& name : builtin_density_names()) {
     const Result<DensityProfile> profile = builtin_density_profile(name);
