@@ -111,6 +111,16 @@ class GoalsTest(unittest.TestCase):
         self.assertEqual((row["edge_p50"], row["equal_edge_p50"]), (.05, .03))
         self.assertEqual(row["half_p50"], .05)
 
+    def test_a_profile_has_a_row_of_its_own_and_bins_of_its_own(self):
+        lines = lines_of({"part": "held out", "input": KITTI.name})[1:]
+        lines.append({**lines[3], "method": "compact-profile"})
+        measured = {(KITTI.name, 4): lines}
+        rows = continuous_goals.held_out(measured).rows
+        self.assertEqual([row["method"] for row in rows],
+                         ["curlidar", "curlidar, profile of other drives"])
+        bins = continuous_confidence.tables({}, measured)[0]
+        self.assertEqual(len({row["kind"] for row in bins.rows}), 2)
+
     def test_against_truth_the_p95_itself_is_wanted(self):
         lines = lines_of({"part": "truth"})[1:]
         row = by(continuous_goals.truth({("room", "vlp16"): lines}), factor=4.)

@@ -189,7 +189,7 @@ Status upsampling(const Arguments& arguments) {
   CURLIDAR_TRY_ASSIGN(own, own_scan(scan));
   const Image truth = tulip::project(own.cloud);
   const Image given = tulip::given_rows(truth);
-  print_line({{"scan", scan.path}, {"motion_undone", own.motion_undone}});
+  print_line({{"motion_undone", own.motion_undone}});
   const auto print = [&](const std::string& method, const Image& predicted) {
     return print_scores(method, predicted, given, truth);
   };

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from frame.cells import Missing
 from frame.tables import Column, Figure, Table
-from sections import continuous_borders, continuous_confidence, continuous_goals
+from sections import continuous_borders, continuous_confidence, continuous_goals, profiles
 from sections.one_to_one import explain, plain_numbers, short, table_id, taken_as
 
 TITLE = "Continuous reconstruction"
@@ -14,6 +14,7 @@ FACTORS, QUICK_FACTORS = (2, 4, 8), (2, 8)
 HELD_OUT = (2, 4)  # every K-th ring coded
 NO_FILE = Missing("raw samples, no file")
 METHODS = {"baseline": "baseline", "paper": "paper", "compact": "curlidar",
+           "compact-profile": "curlidar, profile of other drives",
            "compact-field": "curlidar, its field alone", "linear": "linear in 1/r",
            "edge-aware": "edge-aware in 1/r",
            "edge-aware-calibrated": "edge-aware, rings calibrated"}
@@ -97,8 +98,11 @@ def truth_command(context, program, scene):
 
 
 def held_out_of(context, scan, every):
+    command = held_out_command(context.bin / "report_measure", scan, scan.path, every)
+    profile = profiles.without_drive(context, scan, "rings", "--every", str(every),
+                                     *profiles.RINGS)
     return context.measure("continuous", {"input": scan.name, "part": "held out", "every": every},
-                           held_out_command(context.bin / "report_measure", scan, scan.path, every))
+                           command + (["--profile", profile] if profile else []))
 
 
 def held_out_command(program, scan, path, every):
@@ -251,7 +255,7 @@ def drawn(line):
         else METHODS[line["method"]]
 
 
-NAMES = ("curlidar", "curlidar, its field alone", "baseline", "paper, S 1x1", "paper, S 2x1",
+NAMES = ("curlidar", "curlidar, profile of other drives", "curlidar, its field alone", "baseline", "paper, S 1x1", "paper, S 2x1",
          "paper, S 2x2", "linear in 1/r", "edge-aware in 1/r", "edge-aware, rings calibrated")
 
 
@@ -302,7 +306,7 @@ def draw(context, name, label):
                 if line:
                     axis.plot(*zip(*line), marker=plots.MARKERS[NAMES.index(method)], label=method,
                               color=plots.colour_of(method, NAMES),
-                              linestyle="--" if method == "curlidar, its field alone" else "-")
+                              linestyle={NAMES[1]: "-.", NAMES[2]: "--"}.get(method, "-"))
             axis.set(xscale="log", xlabel=label)
             axis.set_xticks(FACTORS, [str(factor) for factor in FACTORS])
             axis.minorticks_off()

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Upsampling of 16 rings to 64: TULIP's protocol on KITTI, distances to the whole scan, a map."""
-from pathlib import Path
 from statistics import fmean
 
 from frame.cells import Missing
-from frame.context import OUTPUT
-from frame.scans import every_scan_beside
 from frame.tables import Column, Figure, Table, rows_or
+from sections import profiles
 from sections.one_to_one import explain, short
+from sections.profiles import drive_of
 
 TITLE = "Upsampling: 16 rings to 64"
 TABLES = ("upsampling", "upsampling-drives")
@@ -29,35 +28,14 @@ COLUMNS = [
     Column("completeness", "completeness", "share", check="share")]
 
 
-def drive_of(scan):
-    return str(Path(scan.name).parent)
-
-
 def judged(context):
     """The scans of sensors of 64 rings."""
     return [scan for scan in context.scans if scan.is_kitti]
 
 
-def profile_of(context, drive):
-    """A profile fitted to all scans at hand of other drives; None if there are none, or in quick
-    runs."""
-    scans = every_scan_beside(judged(context)[0])
-    others = [scan for scan in scans if scan.is_kitti and drive_of(scan) != drive]
-    if context.quick or not others or not (context.bin / "density").is_file():
-        return None
-    return context.made(".toml", [context.bin / "density", "image", list_of(context, others),
-                                  OUTPUT, "--threads", "1"])
-
-
-def list_of(context, scans):
-    """The file that `density` takes: GROUP PATH on each line."""
-    lines = "".join(f"{drive_of(scan)} {scan.path}\n" for scan in scans)
-    return context.made_text(".txt", lines)
-
-
 def scores_of(context, scan):
     """Lines of methods."""
-    profile = profile_of(context, drive_of(scan))
+    profile = profiles.without_drive(context, scan, "image", *profiles.IMAGE)
     command = [context.bin / "report_measure", "upsampling", scan.path]
     lines = context.measure("upsampling", {"input": scan.name, "part": "protocol"},
                             command + (["--profile", profile] if profile else []))

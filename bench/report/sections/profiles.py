@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Density profiles fitted to the scans at hand, without the drive that is judged by them."""
+from pathlib import Path
+
+from frame.context import OUTPUT
+from frame.scans import every_scan_beside
+
+PROGRAM = "density"
+IMAGE = ("--return-trees", "40", "--residual-trees", "0", "--depth", "5")
+RINGS = ("--return-trees", "0", "--residual-trees", "0")
+
+
+def drive_of(scan):
+    return str(Path(scan.name).parent)
+
+
+def without_drive(context, scan, kind, *options):
+    """The profile as a file to be made; None in quick runs, for scans of sensors that have none,
+    and without scans of other drives or the program that fits."""
+    if context.quick or not scan.is_kitti or not (context.bin / PROGRAM).is_file():
+        return None
+    others = [each for each in every_scan_beside(scan)
+              if each.is_kitti and drive_of(each) != drive_of(scan)]
+    if not others:
+        return None
+    lines = "".join(f"{drive_of(each)} {each.path}\n" for each in others)
+    return context.made(".toml", [context.bin / PROGRAM, kind, context.made_text(".txt", lines),
+                                  OUTPUT, *options, "--threads", "1"])
