@@ -138,36 +138,35 @@ void DenseField::range_along(std::span<const Sightline> lines, std::span<RangeEs
   });
 }
 
-double DenseField::on_row(double row, double column, bool masked) const {
-  const RowLine line = field_->row_line(row);
-  const double azimuth = std::remainder(lattice().azimuth(column), 2 * std::numbers::pi);
-  const PlaneLine plane{
-      azimuth, {0, line.height_m}, {std::cos(line.elevation), std::sin(line.elevation)}};
-  const Found found = find_in_plane(plane);
+double DenseField::along_row(const RowLine& row, PlaneLine line, double column, bool masked) const {
+  if (!std::isfinite(column)) return kNan;
+  line.azimuth = std::remainder(lattice().azimuth(column), 2 * std::numbers::pi);
+  Found found = find_in_plane(line);
+  judge(found);
   if (!(found.guess.r > 0) || (masked && found.guess.seen != Seen::surface)) return kNan;
-  return line.range_of(found.guess.r * plane.along.rho,
-                       line.height_m + found.guess.r * plane.along.z);
+  return row.range_of(found.guess.r * line.along.rho, row.height_m + found.guess.r * line.along.z);
+}
+
+bool DenseField::on_cell(std::uint32_t row, double column) const {
+  const double width = lattice().columns();
+  const double within = column - std::floor(column / width) * width;
+  return within < width && within == std::floor(within) &&
+         occupied(row, static_cast<std::uint32_t>(within));
 }
 
 void DenseField::evaluate_row(double row, std::span<const double> columns, bool masked,
                               std::span<double> ranges) const {
   if (points_.empty()) return field_->evaluate_row(row, columns, masked, ranges);
-  const double inside = std::clamp(row, 0.0, static_cast<double>(lattice().rows() - 1));
-  const bool coded = inside == std::floor(inside);
-  const double offset = coded ? field_->ring_offset_m(static_cast<std::uint32_t>(inside)) : 0;
+  const bool coded = row == std::floor(row) && row >= 0 && row < lattice().rows();
+  const double offset = coded ? field_->ring_offset_m(static_cast<std::uint32_t>(row)) : 0;
+  const RowLine line = field_->row_line(row);
+  const PlaneLine plane{
+      0, {0, line.height_m}, {std::cos(line.elevation), std::sin(line.elevation)}};
   for (std::size_t i = 0; i < columns.size(); ++i) {
     // A cell keeps what the file says of it.
-    const double turns = std::floor(columns[i] / lattice().columns());
-    const double column = columns[i] - turns * lattice().columns();
-    const bool cell =
-        coded && column == std::floor(column) && column < lattice().columns() &&
-        occupied(static_cast<std::uint32_t>(inside), static_cast<std::uint32_t>(column));
-    if (cell) {
-      field_->evaluate_row(row, columns.subspan(i, 1), masked, ranges.subspan(i, 1));
-      continue;
-    }
-    ranges[i] = on_row(row, columns[i], masked) + offset;
-    if (std::isnan(ranges[i]) && !masked) {
+    const bool cell = coded && on_cell(static_cast<std::uint32_t>(row), columns[i]);
+    ranges[i] = cell ? kNan : along_row(line, plane, columns[i], masked) + offset;
+    if (cell || (std::isnan(ranges[i]) && !masked)) {
       field_->evaluate_row(row, columns.subspan(i, 1), masked, ranges.subspan(i, 1));
     }
   }

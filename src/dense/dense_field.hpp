@@ -61,7 +61,11 @@ class DenseField final : public Field {
   float confidence_of(const Found& found) const;
   /// What the profile says of it, if the line is that of a row.
   void judge(Found& found) const;
-  double on_row(double row, double column, bool masked) const;
+  /// Where the line of a row, turned to a column, meets what is believed or, not `masked`, guessed;
+  /// as a range of the row.
+  double along_row(const RowLine& row, PlaneLine line, double column, bool masked) const;
+  /// Whether a column of a row of the lattice is the middle of a coded cell.
+  bool on_cell(std::uint32_t row, double column) const;
 
   std::shared_ptr<const Field> field_;
   RingPoints points_;

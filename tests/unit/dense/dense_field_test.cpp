@@ -264,6 +264,22 @@ TEST(DenseField, PlacesWhatItEvaluates) {
   }
 }
 
+TEST(DenseField, EvaluatesHalfARowBeyondTheOutermostOnes) {
+  const auto field =
+      dense_field(std::make_shared<RingField>(rings(false), 720, test::plane({0, 1, 0}, 8)));
+  const std::array columns{510.3, kNan};
+  std::array<double, 2> ranges{};
+  std::array<Vec3, 2> points;
+  for (const double row : {-.4, 15.4}) {
+    field->evaluate_row(row, columns, true, ranges);
+    field->place_row(row, columns, ranges, points);
+    EXPECT_NEAR(points[0].y, 8, 1e-6) << row;
+    EXPECT_TRUE(std::isnan(ranges[1]));
+  }
+  field->evaluate_row(-2, columns, true, ranges);
+  EXPECT_TRUE(std::isnan(ranges[0]));
+}
+
 TEST(DenseField, IsTheSameForAnyThreadsAndOrder) {
   const auto field = street_field();
   std::vector<Sightline> lines;
