@@ -40,10 +40,11 @@ struct DenseSettings {
 };
 
 /// The field of a decoded scan made to be asked between its rows and columns. On its own cells it
-/// says what the field says. Between them a surface is interpolated from the returns of the two
-/// rings that are above and below as seen from where the line of sight starts, planes exactly;
-/// where the two rings saw different surfaces one of them is chosen, never a place between; where
-/// neither saw any, there is nothing. O(cells) to make, about 1 us a line of sight.
+/// says what the field says, but that neighbouring patches of one surface are made to meet. Between
+/// them a surface is interpolated from the returns of the two rings that are above and below as
+/// seen from where the line of sight starts, planes exactly; where the two rings saw different
+/// surfaces one of them is chosen, never a place between; where neither saw any, there is nothing.
+/// O(cells) to make, about 1 us a line of sight.
 std::shared_ptr<const Field> dense_field(std::shared_ptr<const Field> field,
                                          const DenseSettings& settings = {});
 

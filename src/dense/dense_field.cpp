@@ -147,11 +147,14 @@ double DenseField::along_row(const RowLine& row, PlaneLine line, double column, 
   return row.range_of(found.guess.r * line.along.rho, row.height_m + found.guess.r * line.along.z);
 }
 
-bool DenseField::on_cell(std::uint32_t row, double column) const {
+std::optional<std::size_t> DenseField::cell_at(double row, double column) const {
   const double width = lattice().columns();
   const double within = column - std::floor(column / width) * width;
-  return within < width && within == std::floor(within) &&
-         occupied(row, static_cast<std::uint32_t>(within));
+  if (!(within < width) || within != std::floor(within)) return std::nullopt;
+  if (!occupied(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(within))) {
+    return std::nullopt;
+  }
+  return static_cast<std::size_t>(row * width + within);
 }
 
 void DenseField::evaluate_row(double row, std::span<const double> columns, bool masked,
@@ -163,12 +166,13 @@ void DenseField::evaluate_row(double row, std::span<const double> columns, bool 
   const PlaneLine plane{
       0, {0, line.height_m}, {std::cos(line.elevation), std::sin(line.elevation)}};
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    // A cell keeps what the file says of it.
-    const bool cell = coded && on_cell(static_cast<std::uint32_t>(row), columns[i]);
+    // A cell keeps what the file says of it, but for the joints of patches.
+    const std::optional<std::size_t> cell = coded ? cell_at(row, columns[i]) : std::nullopt;
     ranges[i] = cell ? kNan : along_row(line, plane, columns[i], masked) + offset;
     if (cell || (std::isnan(ranges[i]) && !masked)) {
       field_->evaluate_row(row, columns.subspan(i, 1), masked, ranges.subspan(i, 1));
     }
+    if (cell) ranges[i] += points_.joint_m(*cell);
   }
 }
 

@@ -64,8 +64,8 @@ class DenseField final : public Field {
   /// Where the line of a row, turned to a column, meets what is believed or, not `masked`, guessed;
   /// as a range of the row.
   double along_row(const RowLine& row, PlaneLine line, double column, bool masked) const;
-  /// Whether a column of a row of the lattice is the middle of a coded cell.
-  bool on_cell(std::uint32_t row, double column) const;
+  /// The coded cell whose middle a column of a row of the lattice is.
+  std::optional<std::size_t> cell_at(double row, double column) const;
 
   std::shared_ptr<const Field> field_;
   RingPoints points_;

@@ -16,29 +16,25 @@ constexpr double kMostSteps = 0.5;
 /// One row around the turn.
 class Row {
  public:
-  Row(std::span<Vec3> points, std::span<const std::int32_t> patches, double height_m)
-      : points_(points), patches_(patches), height_m_(height_m) {
+  Row(std::span<const Vec3> points, std::span<const std::int32_t> patches, double height_m)
+      : patches_(patches), moves_(points.size(), 0) {
     for (const Vec3& p : points) ranges_.push_back(norm({p.x, p.y, p.z - height_m}));
   }
 
-  void join(double most_m) {
-    moves_.assign(points_.size(), 0);
-    for (std::size_t cell = 0; cell < points_.size(); ++cell) join_behind(cell, most_m);
-    for (std::size_t cell = 0; cell < points_.size(); ++cell) {
-      if (moves_[cell] == 0) continue;
-      const double by = 1 + std::clamp(moves_[cell], -most_m, most_m) / ranges_[cell];
-      Vec3& p = points_[cell];
-      p = {p.x * by, p.y * by, height_m_ + (p.z - height_m_) * by};
-    }
+  /// What each cell moves by.
+  const std::vector<double>& join(double most_m) {
+    for (std::size_t cell = 0; cell < ranges_.size(); ++cell) join_behind(cell, most_m);
+    for (double& move : moves_) move = std::clamp(move, -most_m, most_m);
+    return moves_;
   }
 
  private:
   /// `steps` cells on from a cell, or back.
   std::size_t on(std::size_t cell, std::size_t steps) const {
-    return (cell + steps) % points_.size();
+    return (cell + steps) % ranges_.size();
   }
   std::size_t back(std::size_t cell, std::size_t steps) const {
-    return (cell + points_.size() - steps) % points_.size();
+    return (cell + ranges_.size() - steps) % ranges_.size();
   }
   bool of(std::size_t cell, std::int32_t patch) const {
     return patches_[cell] == patch && patch >= 0 && ranges_[cell] > 0;
@@ -67,25 +63,26 @@ class Row {
     return 0.5 * (1 - (static_cast<double>(away) + 0.5) / kFade);
   }
 
-  std::span<Vec3> points_;
   std::span<const std::int32_t> patches_;
-  double height_m_;
   std::vector<double> ranges_, moves_;
 };
 
 }  // namespace
 
-std::vector<Vec3> joined_points(const Field& field) {
-  std::vector<Vec3> points = field.cell_points();
+std::vector<float> patch_joints(const Field& field, std::span<const Vec3> points) {
   const std::vector<std::int32_t> patches = field.cell_patches();
   const std::size_t columns = field.lattice().columns();
-  if (patches.empty() || columns < 2 * kFade) return points;
+  if (patches.empty() || columns < 2 * kFade) return {};
+  std::vector<float> moves;
+  moves.reserve(points.size());
   for (std::uint32_t row = 0; row < field.lattice().rows(); ++row) {
-    const std::span<Vec3> line{points.data() + row * columns, columns};
-    Row cells(line, {patches.data() + row * columns, columns}, field.row_line(row).height_m);
-    cells.join(kMostSteps * field.step_m());
+    Row cells(points.subspan(row * columns, columns), {patches.data() + row * columns, columns},
+              field.row_line(row).height_m);
+    for (const double move : cells.join(kMostSteps * field.step_m())) {
+      moves.push_back(static_cast<float>(move));
+    }
   }
-  return points;
+  return moves;
 }
 
 }  // namespace curlidar

@@ -21,6 +21,13 @@ void add(std::vector<RingPoint>& ring, const Vec3& p, std::uint32_t cell) {
   if (is_return(p) && rho > 0) ring.push_back({azimuth_of(p), rho, p.z, cell});
 }
 
+/// The point moved along its line from a height on the spin axis.
+Vec3 moved_out(const Vec3& p, double height_m, double by_m) {
+  if (by_m == 0) return p;
+  const Vec3 from{0, 0, height_m};
+  return from + (p - from) * (1 + by_m / norm(p - from));
+}
+
 /// The rows of a lattice from the top; those of files may be in any order.
 std::vector<std::uint32_t> from_the_top(const std::vector<double>& elevations) {
   std::vector<std::uint32_t> rows(elevations.size());
@@ -55,7 +62,8 @@ double turn_between(double from, double to) {
 }
 
 RingPoints::RingPoints(const Field& field) : columns_(field.lattice().columns()) {
-  const std::vector<Vec3> points = joined_points(field);
+  const std::vector<Vec3> points = field.cell_points();
+  joints_ = patch_joints(field, points);
   rows_ = from_the_top(field.lattice().elevations());
   std::vector<std::vector<RingPoint>> rings(rows_.size());
   for (std::size_t ring = 0; ring < rings.size(); ++ring) {
@@ -64,7 +72,8 @@ RingPoints::RingPoints(const Field& field) : columns_(field.lattice().columns())
     heights_.push_back(line.height_m);
     for (std::uint32_t column = 0; column < columns_; ++column) {
       const std::size_t cell = std::size_t{rows_[ring]} * columns_ + column;
-      add(rings[ring], points[cell], static_cast<std::uint32_t>(cell));
+      add(rings[ring], moved_out(points[cell], line.height_m, joint_m(cell)),
+          static_cast<std::uint32_t>(cell));
     }
   }
   take(std::move(rings));

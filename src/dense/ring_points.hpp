@@ -50,6 +50,9 @@ class RingPoints {
   /// The field's row of a ring.
   std::uint32_t row(std::size_t ring) const { return rows_[ring]; }
 
+  /// By how much a cell of the field was moved for patches to meet, metres of its range.
+  double joint_m(std::size_t cell) const { return joints_.empty() ? 0 : joints_[cell]; }
+
   /// The samples of a ring by azimuth.
   std::span<const RingPoint> ring(std::size_t ring) const {
     return std::span(points_).subspan(begin_[ring], begin_[ring + 1] - begin_[ring]);
@@ -73,6 +76,7 @@ class RingPoints {
   std::vector<std::uint32_t> rows_;
   std::uint32_t columns_ = 0;
   double column_step_ = 0;
+  std::vector<float> joints_;       ///< of each cell; empty: none
   std::vector<RingPoint> points_;   ///< ring by ring, by azimuth
   std::vector<std::size_t> begin_;  ///< of each ring in points_
   std::vector<std::uint32_t>

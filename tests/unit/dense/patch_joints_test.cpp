@@ -9,7 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "unit/dense/ring_field.hpp"
+#include "curlidar/field.hpp"
+#include "dense/ring_points.hpp"
 
 namespace curlidar {
 namespace {
@@ -42,33 +43,43 @@ class PatchedField final : public Field {
   std::vector<std::int32_t> patches_;
 };
 
-double largest_step(const std::vector<Vec3>& points) {
-  double largest = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double here = norm(points[i]), next = norm(points[(i + 1) % points.size()]);
-    largest = std::max(largest, std::abs(next - here));
-  }
-  return largest;
+std::vector<float> joints(const Field& field) {
+  return patch_joints(field, field.cell_points());
 }
 
 TEST(PatchJoints, SmoothStepsThatTheCodingMayHaveMade) {
-  const std::vector<Vec3> points = joined_points(PatchedField(.15));
-  EXPECT_LT(largest_step(points), .15 / 4 + 1e-9);
-  EXPECT_NEAR(norm(points[kPatch / 2]), kRange_m, 1e-12);  // middles stay
-  for (const Vec3& p : points) {
-    EXPECT_GT(norm(p), kRange_m - 1e-9);
-    EXPECT_LT(norm(p), kRange_m + .15 + 1e-9);
+  const PatchedField field(.15);
+  const std::vector<Vec3> points = field.cell_points();
+  const std::vector<float> moves = joints(field);
+  ASSERT_EQ(moves.size(), points.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t next = (i + 1) % points.size();
+    const double here = norm(points[i]) + moves[i], there = norm(points[next]) + moves[next];
+    largest = std::max(largest, std::abs(there - here));
+    EXPECT_GT(here, kRange_m - 1e-6);
+    EXPECT_LT(here, kRange_m + .15 + 1e-6);
+  }
+  EXPECT_LT(largest, .15 / 4 + 1e-6);
+  EXPECT_EQ(moves[kPatch / 2], 0);  // middles stay
+}
+
+TEST(PatchJoints, MoveTheSamplesOfRingsAndTheirCellsAlike) {
+  const PatchedField field(.15);
+  const RingPoints points(field);
+  const std::vector<float> moves = joints(field);
+  for (const RingPoint& p : points.ring(0)) {
+    EXPECT_EQ(points.joint_m(p.cell), moves[p.cell]);
+    EXPECT_NEAR(p.rho, norm(field.cell_points()[p.cell]) + moves[p.cell], 1e-9);
   }
 }
 
 TEST(PatchJoints, LeaveTrueStepsAlone) {
-  const PatchedField field(.25);
-  EXPECT_EQ(joined_points(field), field.cell_points());
+  for (const float move : joints(PatchedField(.25))) EXPECT_EQ(move, 0);
 }
 
 TEST(PatchJoints, NeedPatches) {
-  const PatchedField field(.15, false);
-  EXPECT_EQ(joined_points(field), field.cell_points());
+  EXPECT_TRUE(joints(PatchedField(.15, false)).empty());
 }
 
 }  // namespace
