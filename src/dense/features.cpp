@@ -50,12 +50,14 @@ double bend(const Neighbours& row, double middle, int reach) {
 /// How near the samples of a row come to a range, as the logarithm of the ratio.
 double nearest_ratio(const Neighbours& row, double r) {
   constexpr int kReach = 6;
-  double nearest = 2;
-  if (!(r > 0)) return nearest;
+  constexpr double kMost = 7.389056098930650;  // e^2
+  if (!(r > 0)) return 2;
+  double nearest = kMost;
   for (int column = -kReach; column <= kReach; ++column) {
-    if (row.at(column) > 0) nearest = std::min(nearest, std::abs(std::log(row.at(column) / r)));
+    const double there = row.at(column);
+    if (there > 0) nearest = std::min(nearest, std::max(there, r) / std::min(there, r));
   }
-  return nearest;
+  return std::log(nearest);
 }
 
 template <std::size_t kSize>

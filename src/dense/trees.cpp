@@ -9,12 +9,27 @@
 
 namespace curlidar {
 
+namespace {
+
+/// The number of cuts below a value, without a branch that could be guessed wrongly; NaN lies below
+/// all of them.
+std::size_t cuts_below(const std::vector<float>& cuts, float value) {
+  const float* at = cuts.data();
+  std::size_t left = cuts.size();
+  while (left > 1) {
+    const std::size_t half = left / 2;
+    at += half * static_cast<std::size_t>(value > at[half - 1]);
+    left -= half;
+  }
+  const std::size_t passed = static_cast<std::size_t>(at - cuts.data());
+  return passed + static_cast<std::size_t>(left == 1 && value > *at);
+}
+
+}  // namespace
+
 void ObliviousTrees::quantise(std::span<const float> values, std::span<std::uint8_t> levels) const {
   for (std::size_t i = 0; i < cuts.size(); ++i) {
-    // Compared this way round, NaN lies below all cuts.
-    const auto above = std::partition_point(cuts[i].begin(), cuts[i].end(),
-                                            [&](float cut) { return values[i] > cut; });
-    levels[i] = static_cast<std::uint8_t>(above - cuts[i].begin());
+    levels[i] = static_cast<std::uint8_t>(cuts_below(cuts[i], values[i]));
   }
 }
 
