@@ -114,7 +114,11 @@ float DenseField::confidence_of(const Found& found) const {
   const ObliviousTrees& trees = own ? profile_->confidence : generic_confidence();
   if (trees.empty()) return plain_confidence(found.look, found.guess, errors_.noise_m);
   const PlainFeatures features = plain_features(points_, found.look, found.guess, errors_);
-  return static_cast<float>(probability_of(trees(features)));
+  // Trees were taught by steps up to about this; the larger one is, the less often a surface that
+  // it rounds lies within 5 cm.
+  constexpr double kTaughtStep_m = 0.5;
+  const double coarse = std::max(errors_.step_m / kTaughtStep_m, 1.0);
+  return static_cast<float>(probability_of(trees(features)) / coarse);
 }
 
 void DenseField::judge(Found& found) const {
