@@ -17,6 +17,7 @@
 #include "density/asked_scan.hpp"
 #include "density/confidence.hpp"
 #include "density/fit.hpp"
+#include "density/judge.hpp"
 
 namespace {
 
@@ -103,14 +104,29 @@ Status write_profile(const Options& options, DensityProfile profile) {
   return {};
 }
 
+void show(const std::string& path, const RowScan& scan, const DensityProfile& profile) {
+  for (const bool with : {false, true}) {
+    const RowScores s = judge_rows(scan, profile, with);
+    fmt::print(
+        "{}, {} profile: median {:.4f} m, p95 {:.3f} m, completeness {:.3f}; most trusted "
+        "half: median {:.4f} m, p95 {:.3f} m\n",
+        path, with ? "with" : "without", s.median_m, s.p95_m, s.completeness, s.half_median_m,
+        s.half_p95_m);
+  }
+}
+
 Status run_rows(const Options& options) {
   CURLIDAR_TRY_ASSIGN(list, read_list(options.list));
   const bool image = options.kind == "image";
   std::vector<RowScan> scans;
+  std::vector<std::pair<std::string, RowScan>> others;
   for (const auto& [group, path] : list) {
-    if (group == options.without) continue;
     CURLIDAR_TRY_ASSIGN(own, read_own_frame(path));
     CURLIDAR_TRY_ASSIGN(scan, image ? image_rows(own) : ring_rows(own));
+    if (group == options.without) {
+      others.emplace_back(path, std::move(scan));
+      continue;
+    }
     scans.push_back(std::move(scan));
     if (scans.back().elevations.size() != scans.front().elevations.size()) {
       return Error{ErrorCode::invalid_argument, path + ": not as many rings as in the others"};
@@ -122,6 +138,9 @@ Status run_rows(const Options& options) {
   DensityProfile profile = fit_tables(scans, given);
   if (options.trees.return_trees > 0 || options.trees.residual_trees > 0) {
     fit_trees(scans, options.trees, profile, options.threads);
+  }
+  for (const auto& [path, scan] : others) {
+    if (!image && scan.elevations.size() == profile.rows) show(path, scan, profile);
   }
   return write_profile(options, std::move(profile));
 }
