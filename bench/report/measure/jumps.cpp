@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace curlidar::bench {
 namespace {
@@ -18,6 +19,24 @@ std::vector<CellPair> thinned(const std::vector<CellPair>& pairs, std::size_t mo
   return kept;
 }
 
+/// Whether the cells of a pair look almost the same way: those of a ray lattice may lie degrees
+/// apart although their indices follow each other.
+bool look_alike(const Field& field, const CellPair& pair) {
+  constexpr double kSteps = 1.5;
+  static constexpr double kSomewhere_m = 10;
+  const Lattice& lattice = field.lattice();
+  const auto place = [&](double row, double column) {
+    Vec3 point;
+    field.place_row(row, std::span(&column, 1), std::span(&kSomewhere_m, 1), std::span(&point, 1));
+    return point * (1 / norm(point));
+  };
+  const double down = pair.down ? 1 : 0;
+  const double apart =
+      norm(place(pair.row, pair.column) - place(pair.row + down, pair.column + 1 - down));
+  const double row_step = lattice.elevation(pair.row) - lattice.elevation(pair.row + down);
+  return apart <= kSteps * std::max(2 * std::numbers::pi / lattice.columns(), row_step);
+}
+
 }  // namespace
 
 std::vector<CellPair> cell_pairs(const Field& field, std::span<const std::uint32_t> block,
@@ -28,7 +47,7 @@ std::vector<CellPair> cell_pairs(const Field& field, std::span<const std::uint32
   };
   std::vector<CellPair> borders, insides;
   const auto add = [&](CellPair pair, std::uint32_t row, std::uint32_t column) {
-    if (!field.occupied(row, column)) return;
+    if (!field.occupied(row, column) || !look_alike(field, pair)) return;
     pair.border = block_of(pair.row, pair.column) != block_of(row, column);
     (pair.border ? borders : insides).push_back(pair);
   };

@@ -12,7 +12,7 @@
 
 namespace curlidar::bench {
 
-/// Two cells beside each other that both hold a return.
+/// Two cells beside each other that both hold a return and look almost the same way.
 struct CellPair {
   std::uint32_t row = 0, column = 0;
   bool down = false;    ///< the other one is in the next row, else in the next column
