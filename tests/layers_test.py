@@ -29,7 +29,7 @@ HEADERS = {
     "simulate": "simulate", "render": "render", "verify": "codec", "reconstruct": "reconstruct",
 }
 
-SOURCE_FOLDERS = ["include", "src", "apps", "tests", "bench", "fuzz", "tools"]
+SOURCE_FOLDERS = ["include", "src", "apps", "examples", "tests", "bench", "fuzz", "tools"]
 MAX_LINES = 600
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 
