@@ -23,7 +23,7 @@ constexpr const char* kFooter = R"(Examples:
   curlidar decode scan.curl --sensor os1-128 -o os1.pcd  as an OS-1-128 would have seen it
   curlidar decode scan.curl --directions rays.npy -o hits.npy
   curlidar decode scan.curl --rows 4 --mesh -o surface.obj
-  curlidar decode vlp16.curl --preset sparse --keep-originals --confidence -o dense.pcd
+  curlidar decode vlp16.curl --preset sparse --confidence -o dense.pcd
   curlidar decode out/*.curl -o back/ --format bin --attributes intensity
   curlidar decode scan.curl --rings 16:48 --azimuth -45:45 -o ahead.pcd
   curlidar decode cut.curl --allow-truncated       as far as the file goes

@@ -12,8 +12,9 @@
 namespace curlidar::app {
 namespace {
 
-/// Below it the rows that a sparse scan lacks are too often wrong.
-constexpr double kSparseConfidence = 0.5;
+/// Below it the rows that a sparse scan lacks are too often wrong: 16 rings of a simulated street
+/// at 64 rows keep four fifths of their points and lose half of their 95th percentile of error.
+constexpr double kSparseConfidence = 0.2;
 /// Rows that a sparse scan is brought to.
 constexpr double kSparseRows = 64;
 
@@ -184,13 +185,19 @@ void add_belief_options(CLI::App& app, DecodeCommand& command) {
                  "Between the returns: best, or masks (the file's own: cliffs and gaps of the "
                  "paper); default best, of the paper's profiles masks")
       ->group(group);
+  app.add_option("--density-profile", command.density_profile,
+                 "What scans of the sensor have taught about the places between its rings: a "
+                 "built-in name or a .toml file")
+      ->type_name("NAME|FILE")
+      ->group(group);
   app.add_flag("--no-masks", command.no_masks,
                "A point for every direction, also where no surface is to be believed")
       ->group(group);
-  app.add_option("--preset", command.preset,
-                 fmt::format("sparse: scans of 16 or 32 rings at {:g} rows (--rows 4, 2), "
-                             "--min-confidence {:g}; options given have the last word",
-                             kSparseRows, kSparseConfidence))
+  app.add_option(
+         "--preset", command.preset,
+         fmt::format("sparse: scans of 16 or 32 rings at {:g} rows (--rows 4, 2), "
+                     "--min-confidence {:g}, returns kept; options given have the last word",
+                     kSparseRows, kSparseConfidence))
       ->check(CLI::IsMember({"sparse"}))
       ->group(group);
 }
@@ -265,6 +272,9 @@ DecodePlan::DecodePlan(const DecodeCommand& command) : command_(command) {
   decoding_.allow_truncated = command.allow_truncated;
   decoding_.threads = command.common.threads;
   decoding_.region = parse_region(command);
+  if (!command.density_profile.empty()) {
+    profile_ = need_option(load_density_profile(command.density_profile));
+  }
   if (!command.sensor.empty()) sensor_ = need_option(load_sensor(command.sensor));
   if (!command.directions.empty()) directions_ = read_directions(command.directions);
 }
@@ -290,6 +300,8 @@ const char* DecodePlan::suffix() const {
 
 ReconstructSettings DecodePlan::settings(const DecodedScan& scan) const {
   const bool sparse = command_.preset == "sparse";
+  const bool has_room = !command_.organised && !command_.mesh && !sensor_ && !directions_;
+  if (profile_) need(check_density_profile(*profile_, *scan.field));
   const double missing = kSparseRows / static_cast<double>(scan.field->lattice().rows());
   ReconstructSettings settings;
   settings.rows = command_.rows.value_or(sparse ? std::max(1.0, missing) : 1.0);
@@ -297,10 +309,11 @@ ReconstructSettings DecodePlan::settings(const DecodedScan& scan) const {
   settings.masks = !command_.no_masks;
   settings.organised = command_.organised;
   settings.strategy = strategy_;
+  settings.density_profile = profile_;
   settings.min_confidence = command_.min_confidence.value_or(sparse ? kSparseConfidence : 0.0);
   settings.confidence = command_.confidence;
   settings.normals = command_.normals;
-  settings.keep_originals = command_.keep_originals;
+  settings.keep_originals = command_.keep_originals || (sparse && has_room);
   settings.original = command_.original;
   settings.region = decoding_.region;
   settings.threads = command_.common.threads;

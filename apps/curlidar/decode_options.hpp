@@ -2,6 +2,7 @@
 // What `curlidar decode` is asked for: which part of a file, which points of it, in what form.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,7 +24,7 @@ struct DecodeCommand {
   std::string directions, sensor;
   bool mesh = false;
 
-  std::string preset, strategy;
+  std::string preset, strategy, density_profile;
   std::optional<double> min_confidence;
   bool no_masks = false, organised = false;
   bool confidence = false, normals = false, keep_originals = false, original = false;
@@ -44,7 +45,7 @@ class DecodePlan {
   bool mesh() const { return command_.mesh; }
   bool keeps_empty() const { return command_.organised || directions_; }
 
-  /// The settings for one file: presets look at its rows.
+  /// The settings for one file: presets look at its rows, profiles must fit them.
   ReconstructSettings settings(const DecodedScan& scan) const;
   Cloud cloud(const DecodedScan& scan, const ProgressCallback& progress) const;
 
@@ -57,6 +58,7 @@ class DecodePlan {
   WriteOptions writing_;
   std::optional<std::vector<std::string>> attributes_;
   std::optional<DenseStrategy> strategy_;
+  std::shared_ptr<const DensityProfile> profile_;
   std::optional<Cloud> directions_;
   std::optional<SensorProfile> sensor_;
 };

@@ -32,6 +32,9 @@ struct ReconstructSettings {
   /// What decides between the samples; files of the paper's profiles have masks unless told
   /// otherwise, compact files the best.
   std::optional<DenseStrategy> strategy{};
+  /// What scans of the sensor taught, for strategy best; one that does not fit the file's rings is
+  /// left aside (check_density_profile tells).
+  std::shared_ptr<const DensityProfile> density_profile{};
   /// Invented points are left out below this confidence, in [0, 1].
   double min_confidence = 0;
   bool confidence = false;  ///< attribute "confidence" (float32; coded returns have 1)
@@ -51,8 +54,9 @@ struct ReconstructSettings {
 
 /// The continuous field that all of these ask: the scan's own, seen with a strategy (nullopt: as
 /// the settings have it by default). For queries of one's own: Field::range_at. O(cells) to make.
-std::shared_ptr<const Field> continuous_field(const DecodedScan& scan,
-                                              std::optional<DenseStrategy> strategy = {});
+std::shared_ptr<const Field> continuous_field(
+    const DecodedScan& scan, std::optional<DenseStrategy> strategy = {},
+    std::shared_ptr<const DensityProfile> density_profile = {});
 
 /// The cloud seen on an R_row x R_col times denser grid. With factors 1 x 1 and masks: the coded
 /// returns one for one with their attributes, or the encoded cloud of files with every return.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "base/try.hpp"
 
@@ -34,10 +35,11 @@ Status check(const DecodedScan& scan, const ReconstructSettings& settings) {
 
 }  // namespace
 
-std::shared_ptr<const Field> continuous_field(const DecodedScan& scan,
-                                              std::optional<DenseStrategy> strategy) {
+std::shared_ptr<const Field> continuous_field(
+    const DecodedScan& scan, std::optional<DenseStrategy> strategy,
+    std::shared_ptr<const DensityProfile> density_profile) {
   const auto usual = scan.profile == Profile::compact ? DenseStrategy::best : DenseStrategy::masks;
-  return dense_field(scan.field, {.strategy = strategy.value_or(usual)});
+  return dense_field(scan.field, {strategy.value_or(usual), std::move(density_profile)});
 }
 
 void Samples::append(const Samples& other) {
@@ -62,7 +64,9 @@ void Samples::drop_empty() {
 }
 
 View::View(const DecodedScan& scan, const ReconstructSettings& settings)
-    : scan_(&scan), settings_(settings), field_(continuous_field(scan, settings.strategy)) {}
+    : scan_(&scan),
+      settings_(settings),
+      field_(continuous_field(scan, settings.strategy, settings.density_profile)) {}
 
 Result<View> View::make(const DecodedScan& scan, const ReconstructSettings& settings) {
   CURLIDAR_TRY(check(scan, settings));

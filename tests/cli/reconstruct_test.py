@@ -145,7 +145,7 @@ class MeshTest(ReconstructCommandTest):
 class BeliefTest(ReconstructCommandTest):
     def test_less_confidence_gives_more_points(self):
         points = [self.decode("--rows", 4, "--min-confidence", p, "-o", "c.pcd")["points"]
-                  for p in (0, 0.5, 0.9)]
+                  for p in (0, 0.2, 0.5)]
         self.assertGreater(points[0], points[1])
         self.assertGreater(points[1], points[2])
         self.run_fail(USAGE, "decode", "scan.curl", "--min-confidence", 1.5, says="1.5")
@@ -159,11 +159,22 @@ class BeliefTest(ReconstructCommandTest):
     def test_the_sparse_preset(self):
         report = self.decode("--preset", "sparse", "-o", "dense.pcd")
         self.assertEqual(report["rows"], 4)  # 16 rings
-        self.assertEqual(report["min_confidence"], 0.5)
+        self.assertEqual(report["min_confidence"], 0.2)
         self.assertGreater(report["points"], 1.5 * self.report["points_coded"])
+        self.run_ok("decode", "scan.curl", "-o", "plain.csv", "--attributes", "none")
+        self.run_ok("decode", "scan.curl", "--preset", "sparse", "-o", "dense.csv", "--attributes",
+                    "none")
+        plain, dense = [self.path(name).read_text().splitlines()
+                        for name in ("plain.csv", "dense.csv")]
+        self.assertEqual(dense[:len(plain)], plain)  # the returns come first
+        self.decode("--preset", "sparse", "--organised", "-o", "grid.pcd")
         own = self.decode("--preset", "sparse", "--rows", 2, "--min-confidence", 0, "-o", "d.pcd")
         self.assertEqual((own["rows"], own["min_confidence"]), (2, 0))
         self.run_fail(USAGE, "decode", "scan.curl", "--preset", "dense", says="dense")
+
+    def test_density_profiles(self):
+        self.decode("--rows", 2, "--density-profile", "generic", "-o", "g.pcd")
+        self.run_fail(USAGE, "decode", "scan.curl", "--density-profile", "nobody", says="nobody")
 
     def test_normals(self):
         self.decode("--rows", 2, "--normals", "-o", "n.csv")
