@@ -95,8 +95,8 @@ std::vector<Plane> planes_of_row(const View& view, const Sphere& sphere, std::si
   const std::vector<Vec3> normals = normals_at(view, points, 1);
   std::vector<Plane> planes(lines.size());
   for (std::size_t j = 0; j < lines.size(); ++j) {
-    if (std::isnan(points[j].x)) continue;
     const double range = norm(points[j]);
+    if (!(std::isfinite(range) && range > 0)) continue;
     // A surface that does not tell its slant is taken as seen straight.
     const Vec3 normal = std::isnan(normals[j].x) ? points[j] * (-1 / range) : normals[j];
     const double cosine = std::max(-dot(normal, points[j]) / range, kLeastCosine);
@@ -183,34 +183,37 @@ double threshold_of(std::uint64_t row, std::uint64_t column) {
   return value - std::floor(value);
 }
 
-std::vector<Candidate> candidates_of(const Quad& quad, const Sphere& sphere, double density) {
-  const auto [down, right] = divisions_of(quad, sphere, 1 / std::sqrt(density));
-  std::vector<Candidate> candidates;
-  for (std::uint32_t u = 0; u < down; ++u) {
-    const double below = (u + 0.5) / down, row = static_cast<double>(quad.row) + below;
-    const double upper = sphere.elevation(row - 0.5 / down);
-    const double lower = sphere.elevation(row + 0.5 / down);
-    const double steradians = (std::sin(upper) - std::sin(lower)) * sphere.column_angle / right;
-    for (std::uint32_t v = 0; v < right; ++v) {
-      const double beside = (v + 0.5) / right, column = static_cast<double>(quad.column) + beside;
-      Candidate candidate;
-      candidate.line.direction = sphere.direction(row, column);
-      candidate.points_per_m2_sr = density * steradians;
-      candidate.threshold =
-          threshold_of(std::uint64_t{quad.row} * down + u, std::uint64_t{quad.column} * right + v);
-      const double most = candidate.points_per_m2_sr * largest_area(quad, candidate.line.direction);
-      if (candidate.threshold >= most) continue;
-      candidate.weights = weights_at(below, beside);
-      candidates.push_back(candidate);
-    }
+/// How the candidates of a quad lie.
+struct Division {
+  std::uint32_t down, right;
+  double density;
+};
+
+/// Adds the candidates of one line of a quad.
+void add_candidates(const Quad& quad, const Sphere& sphere, const Division& division,
+                    std::uint32_t u, std::vector<Candidate>& candidates) {
+  const auto [down, right, density] = division;
+  const double below = (u + 0.5) / down, row = static_cast<double>(quad.row) + below;
+  const double upper = sphere.elevation(row - 0.5 / down);
+  const double lower = sphere.elevation(row + 0.5 / down);
+  const double steradians = (std::sin(upper) - std::sin(lower)) * sphere.column_angle / right;
+  for (std::uint32_t v = 0; v < right; ++v) {
+    const double beside = (v + 0.5) / right, column = static_cast<double>(quad.column) + beside;
+    Candidate candidate;
+    candidate.line.direction = sphere.direction(row, column);
+    candidate.points_per_m2_sr = density * steradians;
+    candidate.threshold =
+        threshold_of(std::uint64_t{quad.row} * down + u, std::uint64_t{quad.column} * right + v);
+    const double most = candidate.points_per_m2_sr * largest_area(quad, candidate.line.direction);
+    if (candidate.threshold >= most) continue;
+    candidate.weights = weights_at(below, beside);
+    candidates.push_back(candidate);
   }
-  return candidates;
 }
 
-/// Adds the points of a quad.
-void sample_quad(const View& view, const Sphere& sphere, const Quad& quad, double density,
-                 Samples& samples) {
-  const std::vector<Candidate> candidates = candidates_of(quad, sphere, density);
+/// Adds those candidates that the field confirms.
+void add_points(const View& view, const Quad& quad, std::span<const Candidate> candidates,
+                Samples& samples) {
   std::vector<Sightline> lines;
   for (const Candidate& candidate : candidates) lines.push_back(candidate.line);
   std::vector<Vec3> points(lines.size());
@@ -223,6 +226,20 @@ void sample_quad(const View& view, const Sphere& sphere, const Quad& quad, doubl
     if (candidate.threshold >= candidate.points_per_m2_sr * area) continue;
     samples.points.push_back(points[i]);
     samples.confidence.push_back(confidence[i]);
+  }
+}
+
+/// Adds the points of a quad.
+void sample_quad(const View& view, const Sphere& sphere, const Quad& quad, double density,
+                 Samples& samples) {
+  constexpr std::size_t kAtOnce = 4096;
+  const auto [down, right] = divisions_of(quad, sphere, 1 / std::sqrt(density));
+  std::vector<Candidate> candidates;
+  for (std::uint32_t u = 0; u < down; ++u) {
+    add_candidates(quad, sphere, {down, right, density}, u, candidates);
+    if (candidates.size() < kAtOnce && u + 1 < down) continue;
+    add_points(view, quad, candidates, samples);
+    candidates.clear();
   }
 }
 

@@ -16,6 +16,8 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
+/// Steps in a surface that are no cliff: coarse files have such between their blocks.
+constexpr double kStep_m = 0.1;
 /// Grids with fewer columns know nothing of what lies between them.
 constexpr std::uint64_t kFewestColumns = 8;
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
@@ -45,8 +47,12 @@ struct Quad {
   std::array<Vec3, 4> side;  ///< half way from each corner to the next
   Vec3 middle;
 
-  bool joined(std::size_t i) const { return is_straight(corner[i], side[i], corner[(i + 1) % 4]); }
-  bool across(std::size_t i) const { return is_straight(corner[i], middle, corner[i + 2]); }
+  bool joined(std::size_t i) const {
+    return is_straight(corner[i], side[i], corner[(i + 1) % 4], kStep_m);
+  }
+  bool across(std::size_t i) const {
+    return is_straight(corner[i], middle, corner[i + 2], kStep_m);
+  }
   double length(std::size_t i) const { return norm(corner[i] - corner[i + 2]); }
 };
 

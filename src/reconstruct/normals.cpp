@@ -15,6 +15,9 @@ namespace {
 constexpr double kBeside_m = 0.15;
 /// ... but at these angles at least and at most, radians.
 constexpr double kLeastAngle = 1e-3, kMostAngle = 0.05;
+/// Roughness of what is still one surface.
+constexpr double kRough_m = 0.05;
+
 /// Two directions across a line of sight, of unit length.
 struct Across {
   Vec3 left, up;
@@ -77,9 +80,9 @@ void look_closer(const View& view, std::span<const Vec3> points, std::vector<Axi
     if (!std::isnan(axis.tangent.x)) continue;
     const Vec3 &point = points[axis.point], &left = near[next], &right = near[next + 1];
     next += 2;
-    const bool before = is_straight(axis.before, left, point);
-    const bool behind = is_straight(point, right, axis.behind);
-    if (is_straight(left, point, right)) {
+    const bool before = is_straight(axis.before, left, point, kRough_m);
+    const bool behind = is_straight(point, right, axis.behind, kRough_m);
+    if (is_straight(left, point, right, kRough_m)) {
       axis.tangent = right - left;
     } else if (before != behind) {
       axis.tangent = before ? point - axis.before : axis.behind - point;
@@ -106,7 +109,7 @@ std::vector<Vec3> normals_at(const View& view, std::span<const Vec3> points, std
     for (std::size_t k = 0; k < axes.size(); ++k) {
       axes[k].before = far[2 * k];
       axes[k].behind = far[2 * k + 1];
-      if (is_straight(axes[k].before, points[axes[k].point], axes[k].behind)) {
+      if (is_straight(axes[k].before, points[axes[k].point], axes[k].behind, kRough_m)) {
         axes[k].tangent = axes[k].behind - axes[k].before;
       }
     }

@@ -17,7 +17,10 @@ constexpr double kMostSectors = 65536;
 using Box = std::array<std::int64_t, 3>;
 
 Box box_of(const Vec3& p, double side) {
-  const auto index = [&](double v) { return static_cast<std::int64_t>(std::floor(v / side)); };
+  constexpr double kFarthest = 1e15;  // boxes; what lies beyond shares the last
+  const auto index = [&](double v) {
+    return static_cast<std::int64_t>(std::floor(std::clamp(v / side, -kFarthest, kFarthest)));
+  };
   return {index(p.x), index(p.y), index(p.z)};
 }
 

@@ -78,6 +78,12 @@ inline std::string check_decoded(ByteSpan file, const DecodeOptions& options) {
   settings.masks = false;
   settings.organised = true;
   (void)reconstruct(*scan, settings);
+  settings.organised = false;
+  settings.masks = true;
+  settings.normals = settings.confidence = settings.keep_originals = true;
+  (void)reconstruct(*scan, settings);
+  settings.keep_originals = false;
+  (void)reconstruct_mesh(*scan, settings);
   return "";
 }
 

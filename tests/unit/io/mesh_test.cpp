@@ -33,6 +33,27 @@ class MeshFile : public testing::Test {
   const std::vector<std::array<std::uint32_t, 3>> triangles_{{0, 1, 2}, {2, 1, 0}};
 };
 
+TEST_F(MeshFile, NormalsGoWithTheirVertices) {
+  const std::vector<Vec3> normals{{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}};
+  path_ = testing::TempDir() + "curlidar_mesh_test_normals.obj";
+  ASSERT_TRUE(write_mesh(path_, vertices_, triangles_, Encoding::binary, normals));
+  auto bytes = read_file(path_).value();
+  EXPECT_EQ(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()),
+            "v 0 0 0\nv 1.5 0 0\nv 0 -2 0.25\nvn 0 0 1\nvn 0 1 0\nvn -1 0 0\n"
+            "f 1//1 2//2 3//3\nf 3//3 2//2 1//1\n");
+  std::filesystem::remove(path_);
+  path_ = testing::TempDir() + "curlidar_mesh_test_normals.ply";
+  ASSERT_TRUE(write_mesh(path_, vertices_, triangles_, Encoding::binary, normals));
+  const Cloud back = read_cloud(path_).value();
+  EXPECT_EQ(back.positions, vertices_);
+  ASSERT_NE(back.find("nz"), nullptr);
+  EXPECT_EQ(back.find("nx")->as_double(2), -1);
+  EXPECT_EQ(back.find("nz")->as_double(0), 1);
+  const Status refused =
+      write_mesh(path_, vertices_, triangles_, Encoding::binary, std::span(normals).first(2));
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid_argument);
+}
+
 TEST_F(MeshFile, AsciiPlyByHand) {
   EXPECT_EQ(write("a.ply", Encoding::ascii),
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
