@@ -24,6 +24,7 @@ curlidar::Result<std::vector<std::byte>> simulated_file() {
   if (!cloud) return cloud.error();
   curlidar::EncodeSettings settings;
   settings.compact.effort = 1;
+  settings.compact.target_value = 0.02;  // metres of mean error
   auto encoded = curlidar::encode(*cloud, settings);
   if (!encoded) return encoded.error();
   return std::move(encoded->bytes);
