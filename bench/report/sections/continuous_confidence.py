@@ -2,11 +2,13 @@
 """Confidence that is told against what is observed, and what it trades."""
 from frame.check import measured as is_number
 from frame.tables import Column, Figure, Table, rows_or
+from sections.one_to_one import plain_numbers
 
 SIMULATED, HELD_OUT, PROFILE = "simulated", "held-out rings", "held-out rings, with a profile"
 BINS = 10
 FEWEST = 200       # lines in a bin; of fewer a share says little
 WITHIN = .03       # wanted
+LEAST_DRAWN = .05  # completeness; of fewer lines a median says little
 SHOWN = (0, .25, .5, .75, .9, .95)  # of the trades in the table
 
 
@@ -85,7 +87,7 @@ def trade_table(measured_by_kind):
         "lines that meet a surface and are told one with at least the confidence; the share is of "
         "all lines that meet one.",
         columns, rows_or(rows, columns, "no scan was measured"),
-        ["data/continuous-trade.csv has every twentieth."])
+        ["data/continuous-trade.csv has every twentieth, as far as some are left."])
 
 
 def tables(measured_truth, measured_held_out):
@@ -99,7 +101,7 @@ def figures(context, measured_truth, measured_held_out):
             for count, told, hits in pooled(measured) if count >= FEWEST]
     trade = [(kind, name, *(each[key] for key in ("min_confidence", "completeness", "p50", "p95")))
              for kind, measured in by_kind.items() for name, found in trades(measured)
-             for each in found]
+             for each in found if each["completeness"] >= LEAST_DRAWN]
     if not bins:
         return []
     context.write_data("continuous-confidence", ["kind", "told", "observed", "count"], bins)
@@ -134,6 +136,7 @@ def draw(context):
                       color=colour, linewidth=.8, alpha=.7)
     for axis, key in zip(axes[1:], ("median", "p95")):
         axis.set(xlabel="completeness", ylabel=f"{key} (m)", yscale="log", xlim=(0, 1))
+        plain_numbers(axis.yaxis)
     plots.save(figure, context.figure_path("continuous-trust", "svg"))
 
 
