@@ -32,6 +32,8 @@ constexpr double kUpright = 0.25, kFootBehind = 0.03;
 constexpr double kAlikeShare = 0.06, kAlike_m = 0.2;
 constexpr int kVoters = 6;
 constexpr double kVote = 0.25;
+/// Of the way between two rings: so near to one its own samples answer, without a vote.
+constexpr double kOnRing = 0.1;
 /// Columns: a sample is beside; between two of one surface there may be a hole so wide; samples
 /// tell how wild a surface is.
 constexpr double kFarApart_m = 3;
@@ -92,7 +94,19 @@ Guess vote(const RingPoints& points, const Look& look) {
                        : Guess{DenseMode::jump_below, look.below.r, 0};
 }
 
+/// A line that passes along a ring between samples of one surface sees what they saw.
+std::optional<Guess> on_ring(const Look& look) {
+  if (look.share < kOnRing && look.below.mixed) {
+    return Guess{DenseMode::jump_below, look.below.r, 0};
+  }
+  if (look.share > 1 - kOnRing && look.above.mixed) {
+    return Guess{DenseMode::jump_above, look.above.r, 1};
+  }
+  return std::nullopt;
+}
+
 Guess jump(const RingPoints& points, const Look& look) {
+  if (const std::optional<Guess> own = on_ring(look)) return *own;
   if (look.above.r > look.below.r && on_ground(look.line, look.below2, look.below)) {
     // The ground goes on until it meets what stands on it.
     const double ground = met(look.line.inverse_to(look.below2.place, look.below.place));
