@@ -127,6 +127,8 @@ std::optional<Guess> foot(const Look& look) {
       std::tie(look.below2, look.below, look.above2, look.above);
   const double behind = towards(look.line, above).inverse_to(below2.place, below.place) * above.r;
   if (behind > 1 - kFootBehind) return std::nullopt;  // the ground is not clearly behind
+  const double before = towards(look.line, below).inverse_to(above.place, above2.place) * below.r;
+  if (before > 1) return std::nullopt;  // the thing ends above where the ground was seen
   const double ground = met(look.line.inverse_to(below2.place, below.place));
   const double thing = met(look.line.inverse_to(above.place, above2.place));
   if (!(thing > 0) || thing > kFoot * std::max(above.r, below.r)) return std::nullopt;
