@@ -34,10 +34,10 @@ constexpr int kVoters = 6;
 constexpr double kVote = 0.25;
 /// Of the way between two rings: so near to one its own samples answer, without a vote.
 constexpr double kOnRing = 0.1;
-/// Columns: a sample is beside; between two of one surface there may be a hole so wide; samples
-/// tell how wild a surface is.
+/// Columns: a sample is beside; two follow each other; between two of one surface there may be a
+/// hole so wide; samples tell how wild a surface is.
 constexpr double kFarApart_m = 3;
-constexpr double kBeside = 1.5, kHole = 4.5, kSpreadReach = 2.6;
+constexpr double kBeside = 1.5, kNext = 1.9, kHole = 4.5, kSpreadReach = 2.6;
 
 double met(double inverse) {
   return inverse > 1 / kFarthest_m ? 1 / inverse : 0;
@@ -94,12 +94,16 @@ Guess vote(const RingPoints& points, const Look& look) {
                        : Guess{DenseMode::jump_below, look.below.r, 0};
 }
 
-/// A line that passes along a ring between samples of one surface sees what they saw.
+bool has_beside(const RingLook& ring) {
+  return ring.known && (ring.mixed || ring.left.away + ring.right.away <= kNext);
+}
+
+/// A line that passes along a ring between two of its samples sees what one of them saw.
 std::optional<Guess> on_ring(const Look& look) {
-  if (look.share < kOnRing && look.below.mixed) {
+  if (look.share < kOnRing && has_beside(look.below)) {
     return Guess{DenseMode::jump_below, look.below.r, 0};
   }
-  if (look.share > 1 - kOnRing && look.above.mixed) {
+  if (look.share > 1 - kOnRing && has_beside(look.above)) {
     return Guess{DenseMode::jump_above, look.above.r, 1};
   }
   return std::nullopt;
