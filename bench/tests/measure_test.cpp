@@ -9,9 +9,10 @@
 #include <vector>
 
 #include "curlidar/simulate.hpp"
+#include "protocol/ring_split.hpp"
 #include "report/measure/arguments.hpp"
+#include "report/measure/calibrated.hpp"
 #include "report/measure/judge.hpp"
-#include "report/measure/ring_split.hpp"
 #include "report/measure/truth.hpp"
 
 namespace curlidar::bench {

@@ -13,7 +13,7 @@
 #include "curlidar/io.hpp"
 #include "curlidar/simulate.hpp"
 #include "density/row_scan.hpp"
-#include "report/measure/ring_split.hpp"
+#include "protocol/ring_split.hpp"
 
 namespace curlidar::density {
 namespace {

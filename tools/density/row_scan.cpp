@@ -9,7 +9,7 @@
 #include "base/try.hpp"
 #include "codec/beam_tables.hpp"
 #include "curlidar/io.hpp"
-#include "report/measure/tulip.hpp"
+#include "protocol/tulip_image.hpp"
 #include "sensor/own_frame.hpp"
 
 namespace curlidar::density {

@@ -33,7 +33,7 @@ struct RowScan {
 /// The scan in its sensor's own frame; as it is where its motion cannot be told.
 Result<Cloud> read_own_frame(const std::string& path);
 
-/// The cells of the 64 x 1024 image of TULIP's protocol, bench/report/measure/tulip.hpp.
+/// The cells of the 64 x 1024 image of TULIP's protocol, bench/protocol/tulip_image.hpp.
 Result<RowScan> image_rows(const Cloud& own);
 
 /// The returns of a sensor's rings, and the columns missing between them. Errors: those of

@@ -9,9 +9,10 @@
 #include <fmt/format.h>
 
 #include "base/try.hpp"
+#include "protocol/ring_split.hpp"
+#include "report/measure/calibrated.hpp"
 #include "report/measure/inputs.hpp"
 #include "report/measure/methods.hpp"
-#include "report/measure/ring_split.hpp"
 #include "report/measure/verbs.hpp"
 
 namespace curlidar::bench {

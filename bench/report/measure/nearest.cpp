@@ -10,8 +10,8 @@
 #include "base/try.hpp"
 #include "curlidar/compare.hpp"
 #include "curlidar/paper.hpp"
+#include "protocol/ring_split.hpp"
 #include "report/measure/inputs.hpp"
-#include "report/measure/ring_split.hpp"
 #include "report/measure/truth.hpp"
 #include "report/measure/verbs.hpp"
 

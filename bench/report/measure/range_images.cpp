@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 
 #include "base/try.hpp"
+#include "protocol/ring_split.hpp"
 #include "report/measure/inputs.hpp"
-#include "report/measure/ring_split.hpp"
 #include "report/measure/truth.hpp"
 #include "report/measure/verbs.hpp"
 

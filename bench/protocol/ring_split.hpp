@@ -3,11 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "curlidar/cloud.hpp"
-#include "curlidar/field.hpp"
 #include "curlidar/sensor.hpp"
 
 namespace curlidar::bench {
@@ -26,12 +24,5 @@ struct RingSplit {
 /// Keeps every `every`-th ring. Rings below the last kept one lie between nothing and are in
 /// neither part. The detection must be that of the cloud.
 RingSplit split_rings(const Cloud& cloud, const Detection& detection, std::uint32_t every);
-
-/// Estimates with the median error of their ring added, each fitted on the sectors of the turn (10
-/// degrees) on either side of its own: what a calibration of the held-out rings would bring.
-/// `returns` and `rings` are of the held-out returns, `told` may go on after them.
-std::vector<RangeEstimate> calibrated(std::vector<RangeEstimate> told,
-                                      std::span<const Vec3> returns,
-                                      std::span<const std::uint16_t> rings);
 
 }  // namespace curlidar::bench

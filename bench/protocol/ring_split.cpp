@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/measure/ring_split.hpp"
+#include "protocol/ring_split.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <numbers>
-#include <utility>
 
 #include <fmt/format.h>
 
-#include "curlidar/compare.hpp"
 #include "curlidar/lattice.hpp"
 
 namespace curlidar::bench {
@@ -19,7 +15,6 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kGapColumns = 1.8;  ///< returns on neighbouring columns are nearer than that
-constexpr double kSector = kTurn / 36;
 
 /// Directions on the columns that are missing between a ring's returns.
 void add_gaps(std::vector<Vec3> ring, std::uint32_t columns, std::vector<Vec3>& gaps) {
@@ -38,12 +33,6 @@ void add_gaps(std::vector<Vec3> ring, std::uint32_t columns, std::vector<Vec3>& 
       gaps.push_back(direction_of(up, azimuth_of(right) + part * wide));
     }
   }
-}
-
-/// Even and odd sectors of a ring by turns.
-std::pair<std::uint16_t, bool> half_of(const Vec3& p, std::uint16_t ring) {
-  const double sector = std::floor((azimuth_of(p) + std::numbers::pi) / kSector);
-  return {ring, std::fmod(sector, 2) != 0};
 }
 
 }  // namespace
@@ -79,27 +68,6 @@ RingSplit split_rings(const Cloud& cloud, const Detection& detection, std::uint3
   split.coded = select(cloud, coded);
   split.coded.attributes.clear();
   return split;
-}
-
-std::vector<RangeEstimate> calibrated(std::vector<RangeEstimate> told,
-                                      std::span<const Vec3> returns,
-                                      std::span<const std::uint16_t> rings) {
-  std::map<std::pair<std::uint16_t, bool>, std::vector<double>> errors;
-  for (std::size_t i = 0; i < returns.size(); ++i) {
-    if (!told[i].valid()) continue;
-    errors[half_of(returns[i], rings[i])].push_back(norm(returns[i]) - told[i].range_m);
-  }
-  std::map<std::pair<std::uint16_t, bool>, double> bias;
-  for (auto& [half, values] : errors) {
-    std::sort(values.begin(), values.end());
-    bias[half] = percentile(values, 0.5);
-  }
-  for (std::size_t i = 0; i < returns.size(); ++i) {
-    const auto [ring, odd] = half_of(returns[i], rings[i]);
-    const auto found = bias.find({ring, !odd});
-    if (told[i].valid() && found != bias.end()) told[i].range_m += found->second;
-  }
-  return told;
 }
 
 }  // namespace curlidar::bench
