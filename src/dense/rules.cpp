@@ -4,22 +4,24 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <tuple>
 
 namespace curlidar {
 namespace {
 
-/// Shares of the nearer range. Rings no farther apart saw one surface, whatever its slope;
-constexpr double kSame = 0.05;
+/// Rings whose ranges are no farther apart, as a share of the nearer, saw one surface, whatever its
+/// slope;
+constexpr double kSameShare = 0.1, kSame_m = 0.3;
 /// or they did if a plane through two rings comes so near to the third
 constexpr double kPlanarApart = 0.35, kPlanar_m = 0.1;  // of how far they are apart
 /// or, of surfaces that recede upwards as grounds do, so near.
 constexpr double kReceding = 0.12;
 /// Rings whose ranges differ by more are not continued by a plane.
 constexpr double kContinued = 2;
-/// Nothing is seen farther than this.
-constexpr double kFarthest_m = 400;
+/// Farther than any sensor sees; planes that meet the line beyond are as good as parallel to it.
+constexpr double kFarthest_m = 1000;
 /// Slope of what may be ground, what its samples add to it, and how far below the eye it lies.
 constexpr double kGroundSlope = 0.15, kGroundNoise_m = 0.05, kGroundBelow_m = 0.5;
 /// A ground that ends behind something is seen up to it, give or take.
@@ -140,9 +142,12 @@ std::optional<Guess> foot(const Look& look) {
   return Guess{DenseMode::planar, thing, 1};
 }
 
+bool same_range(const RingLook& a, const RingLook& b) {
+  return a.known && b.known && std::abs(a.r - b.r) < kSameShare * std::min(a.r, b.r) + kSame_m;
+}
+
 bool one_surface(const Look& look) {
-  const double a = look.above.r, b = look.below.r;
-  return std::abs(a - b) < kSame * std::min(a, b);
+  return same_range(look.above, look.below);
 }
 
 bool one_plane(const Look& look) {
@@ -151,6 +156,34 @@ bool one_plane(const Look& look) {
   const double down = miss(look.line, look.above2, look.above, look.below);
   if (std::min(up, down) < kPlanarApart * apart + kPlanar_m) return true;
   return a > b && (up < kReceding * a || down < kReceding * b);
+}
+
+/// The same rings some columns aside.
+Look aside(const RingPoints& points, const Look& look, int columns) {
+  Look there;
+  there.line = look.line;
+  there.line.azimuth =
+      std::remainder(look.line.azimuth + columns * points.column_step(), 2 * std::numbers::pi);
+  there.above = look_at_ring(points, there.line, look.above.ring);
+  there.below = look_at_ring(points, there.line, look.below.ring);
+  there.above2 = look_at_ring(points, there.line, look.above2.ring);
+  there.below2 = look_at_ring(points, there.line, look.below2.ring);
+  return there;
+}
+
+/// one_plane() as most columns around say that see the same two surfaces: noise of single ones
+/// would make teeth.
+bool one_plane_around(const RingPoints& points, const Look& look) {
+  constexpr int kReach = 2;
+  int votes = 0;
+  for (int columns = -kReach; columns <= kReach; ++columns) {
+    const Look there = columns == 0 ? look : aside(points, look, columns);
+    const bool same = same_range(there.above, look.above) && same_range(there.below, look.below);
+    if (!same || one_surface(there)) continue;
+    const int weight = kReach + 1 - std::abs(columns);
+    votes += one_plane(there) ? weight : -weight;
+  }
+  return votes > 0;
 }
 
 /// One ring alone: a ground goes on, anything else keeps its distance.
@@ -177,7 +210,7 @@ Guess between_rings(const RingPoints& points, const Look& look) {
   const double chord = met(look.line.inverse_to(look.below.place, look.above.place));
   if (const std::optional<Guess> corner = foot(look)) return *corner;
   if (chord > 0 && one_surface(look)) return {DenseMode::smooth, chord, look.share};
-  if (chord > 0 && one_plane(look)) return {DenseMode::planar, chord, look.share};
+  if (chord > 0 && one_plane_around(points, look)) return {DenseMode::planar, chord, look.share};
   return jump(points, look);
 }
 
