@@ -36,10 +36,10 @@ constexpr int kVoters = 6;
 constexpr double kVote = 0.25;
 /// Of the way between two rings: so near to one its own samples answer, without a vote.
 constexpr double kOnRing = 0.1;
-/// Columns: a sample is beside; two follow each other; between two of one surface there may be a
-/// hole so wide; samples tell how wild a surface is.
+/// Columns: a line passes at a sample; a sample is beside; two follow each other; between two of
+/// one surface there may be a hole so wide; samples tell how wild a surface is.
 constexpr double kFarApart_m = 3;
-constexpr double kBeside = 1.5, kNext = 1.9, kHole = 4.5, kSpreadReach = 2.6;
+constexpr double kAtSample = 0.1, kBeside = 1.5, kNext = 1.9, kHole = 4.5, kSpreadReach = 2.6;
 
 double met(double inverse) {
   return inverse > 1 / kFarthest_m ? 1 / inverse : 0;
@@ -96,8 +96,10 @@ Guess vote(const RingPoints& points, const Look& look) {
                        : Guess{DenseMode::jump_below, look.below.r, 0};
 }
 
+/// Whether the line passes at a sample of the ring, or between two that follow each other.
 bool has_beside(const RingLook& ring) {
-  return ring.known && (ring.mixed || ring.left.away + ring.right.away <= kNext);
+  if (!ring.known) return false;
+  return ring.mixed || ring.near <= kAtSample || ring.left.away + ring.right.away <= kNext;
 }
 
 /// A line that passes along a ring between two of its samples sees what one of them saw.
