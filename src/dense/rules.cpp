@@ -36,9 +36,10 @@ constexpr int kVoters = 6;
 constexpr double kVote = 0.25;
 /// Of the way between two rings: so near to one its own samples answer, without a vote.
 constexpr double kOnRing = 0.1;
+/// Two surfaces are.
+constexpr double kFarApart_m = 3;
 /// Columns: a line passes at a sample; a sample is beside; two follow each other; between two of
 /// one surface there may be a hole so wide; samples tell how wild a surface is.
-constexpr double kFarApart_m = 3;
 constexpr double kAtSample = 0.1, kBeside = 1.5, kNext = 1.9, kHole = 4.5, kSpreadReach = 2.6;
 
 double met(double inverse) {
