@@ -58,8 +58,8 @@ const std::vector<Verb> kVerbs{
      timing},
     {"upsampling",
      1,
-     {"preset", "sensor", "profile"},
-     "SCAN [--sensor S] [--profile P]",
+     {"preset", "sensor", "profile", "rings-profile"},
+     "SCAN [--sensor S] [--profile P] [--rings-profile P]",
      upsampling},
 };
 

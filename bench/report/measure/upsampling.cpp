@@ -1,25 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // 16 rings to 64 by TULIP's protocol: every method predicts the rows of the image between those
 // given.
+#include <array>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "base/try.hpp"
-#include "codec/beam_tables.hpp"
 #include "dense/row_rules.hpp"
 #include "report/measure/codecs.hpp"
 #include "report/measure/inputs.hpp"
 #include "report/measure/json.hpp"
+#include "report/measure/own_scan.hpp"
+#include "report/measure/ring_samples.hpp"
 #include "report/measure/tulip.hpp"
+#include "report/measure/upsampling_files.hpp"
 #include "report/measure/verbs.hpp"
 #include "sensor/angles.hpp"
-#include "sensor/own_frame.hpp"
 
 namespace curlidar::bench {
 namespace {
@@ -28,21 +32,6 @@ using tulip::Image;
 using tulip::kColumns;
 using tulip::kEvery;
 using tulip::kRows;
-
-struct OwnScan {
-  Cloud cloud;
-  SensorProfile sensor;
-  bool motion_undone = false;
-};
-
-/// The scan as the sensor saw it; as it is where its motion cannot be told.
-Result<OwnScan> own_scan(const Scan& scan) {
-  CURLIDAR_TRY_ASSIGN(rings, scan.settings.sensor ? assign_rings(scan.cloud, *scan.settings.sensor)
-                                                  : detect_sensor(scan.cloud));
-  CURLIDAR_TRY_ASSIGN(fit, find_sensor_lattice(scan.cloud, rings, scan.settings));
-  if (!fit || fit->motion.none()) return OwnScan{scan.cloud, rings.sensor, false};
-  return OwnScan{in_own_frame(scan.cloud, *fit), rings.sensor, true};
-}
 
 /// Ranges of the rows between the given ones, by the ranges below and above (0: none) and how far
 /// up the row lies between them.
@@ -66,11 +55,9 @@ double nearest_ring(double below, double above, double up) {
 }
 
 double edge_aware(double below, double above, double up) {
-  constexpr double kEdge = .35;  ///< ranges that differ by more belong to two surfaces
-  if (!(below > 0 && above > 0) || std::abs(below - above) > kEdge * std::min(below, above)) {
-    return nearest_ring(below, above, up);
-  }
-  return 1 / ((1 - up) / below + up / above);
+  const auto range = [](double r) { return r > 0 ? r : std::nan(""); };
+  const double mixed = mix_ranges(range(below), range(above), up, Mixing::edge_aware);
+  return std::isnan(mixed) ? 0 : mixed;
 }
 
 /// The given rows as rings, from the top; elevations are the profile's, or the rows' own.
@@ -173,13 +160,48 @@ Json to_json(const tulip::Scores& s) {
           {"completeness", s.completeness}};
 }
 
-Status print_scores(const std::string& method, const Image& predicted, const Image& given,
-                    const Image& truth) {
+Status print_scores(Json line, const Image& predicted, const Image& given, const Image& truth) {
   CURLIDAR_TRY_ASSIGN(scores, tulip::score(predicted, given, truth));
-  Json line{{"method", method}};
   line.update(to_json(scores));
   print_line(line);
   return {};
+}
+
+/// Prints an image that was decoded: with its own given rows, and with these left exact.
+Status print_decoded(const std::string& method, double bits, const Image& decoded,
+                     const Image& told, const Image& given, const Image& truth) {
+  const auto line = [&](const char* rows) {
+    return Json{{"method", method + rows}, {"bits_per_point", bits}};
+  };
+  CURLIDAR_TRY(print_scores(line(""), told, decoded, truth));
+  return print_scores(line(", given rows exact"), told, given, truth);
+}
+
+/// What a user has: files of 16 rings of the sensor, seen by the whole one.
+Status print_files(const OwnScan& own, const std::shared_ptr<const DensityProfile>& profile,
+                   const Image& truth, const Image& given) {
+  constexpr double kFine_m = 0.005;
+  const std::array files{std::tuple{"file, 5 mm", CompactTarget::error, kFine_m},
+                         std::tuple{"file, 1 bit", CompactTarget::bits_per_point, 1.0}};
+  for (const auto& [name, target, value] : files) {
+    CURLIDAR_TRY_ASSIGN(file, file_of_rings(own.cloud, own.rings, target, value));
+    CURLIDAR_TRY_ASSIGN(plain, seen_by(file, own.rings.sensor, nullptr));
+    CURLIDAR_TRY(print_decoded(name, file.bits_per_point, plain, plain, given, truth));
+    if (!profile) continue;
+    CURLIDAR_TRY(check_density_profile(*profile, *file.scan.field));
+    CURLIDAR_TRY_ASSIGN(taught, seen_by(file, own.rings.sensor, profile));
+    CURLIDAR_TRY(print_decoded(std::string(name) + ", profile", file.bits_per_point, taught, taught,
+                               given, truth));
+  }
+  return {};
+}
+
+/// The profile that an option names; none if it is not given.
+Result<std::shared_ptr<const DensityProfile>> profile_of(const Arguments& arguments,
+                                                         const std::string& option) {
+  const std::string name = arguments.option(option, "");
+  if (name.empty()) return std::shared_ptr<const DensityProfile>();
+  return load_density_profile(name);
 }
 
 }  // namespace
@@ -191,19 +213,20 @@ Status upsampling(const Arguments& arguments) {
   const Image given = tulip::given_rows(truth);
   print_line({{"motion_undone", own.motion_undone}});
   const auto print = [&](const std::string& method, const Image& predicted) {
-    return print_scores(method, predicted, given, truth);
+    return print_scores({{"method", method}}, predicted, given, truth);
   };
   CURLIDAR_TRY(print("nearest ring", interpolate(given, nearest_ring)));
   CURLIDAR_TRY(print("edge-aware", interpolate(given, edge_aware)));
   const DensityProfile nominal = nominal_rows();
   CURLIDAR_TRY(print("rules", predict(rings_of(given, nominal).points(), nominal)));
-  const std::string name = arguments.option("profile", "");
-  if (name.empty()) return {};
-  CURLIDAR_TRY_ASSIGN(profile, load_density_profile(name));
+  CURLIDAR_TRY_ASSIGN(of_rings, profile_of(arguments, "rings-profile"));
+  CURLIDAR_TRY(print_files(own, of_rings, truth, given));
+  CURLIDAR_TRY_ASSIGN(profile, profile_of(arguments, "profile"));
+  if (!profile) return {};
   if (profile->rows != kRows || profile->given_first != nominal.given_first ||
       profile->given_every != kEvery) {
     return Error{ErrorCode::invalid_argument,
-                 name + ": not a profile of 64 rows of which every fourth is given"};
+                 "--profile: not a profile of 64 rows of which every fourth is given"};
   }
   const GivenRings rings = rings_of(given, *profile);
   DensityProfile tables = *profile;
@@ -212,11 +235,10 @@ Status upsampling(const Arguments& arguments) {
   CURLIDAR_TRY(print("rules, tables, trees", predict(rings.points(), *profile)));
   const Cloud returns = returns_of_given_rows(own.cloud);
   for (const double bits : {1.0, 2.0}) {
-    CURLIDAR_TRY_ASSIGN(coded, code(returns, own.sensor, bits));
+    CURLIDAR_TRY_ASSIGN(coded, code(returns, own.rings.sensor, bits));
     const Image told = predict(rings_of(coded.image, *profile).points(), *profile);
-    const std::string method = bits == 1 ? "decoded" : fmt::format("decoded at {} bits", bits);
-    CURLIDAR_TRY(print_scores(method, told, coded.image, truth));
-    CURLIDAR_TRY(print(method + ", given rows exact", told));
+    CURLIDAR_TRY(print_decoded(fmt::format("decoded image, {} bit", bits), coded.bits_per_point,
+                               coded.image, told, given, truth));
   }
   return {};
 }

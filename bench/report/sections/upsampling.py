@@ -4,28 +4,44 @@ from statistics import fmean
 
 from frame.cells import Missing
 from frame.tables import Column, Figure, Table, rows_or
-from sections import profiles
+from sections import profiles, upsampling_goals
 from sections.one_to_one import explain, short
 from sections.profiles import drive_of
 
 TITLE = "Upsampling: 16 rings to 64"
-TABLES = ("upsampling", "upsampling-drives")
+TABLES = ("upsampling-goals", "upsampling", "upsampling-drives")
 FIGURES = ("mae_m", "both_valid_mae_m", "chamfer_m2", "iou", "f1")
 MORE = ("p50", "completeness")
-METHODS = {"nearest ring": "nearest ring", "edge-aware": "linear in inverse range, edge-aware",
-           "rules": "curlidar, rules alone",
-           "rules, tables": "curlidar, tables of other drives",
-           "rules, tables, trees": "curlidar, tables and trees of other drives",
-           "decoded": "the same from its file at 1 bit a return",
-           "decoded, given rows exact": "from that file, the given rows left exact"}
+RAW = {"nearest ring": "nearest ring of the image", "edge-aware": "edge-aware in 1/r",
+       "rules": "curlidar's rules on the image's rows",
+       "rules, tables": "the same with tables of other drives",
+       "rules, tables, trees": "with tables and trees of other drives"}
+IMAGE = {"decoded image, 1 bit": "the last, image rows from a file at 1 bit a return",
+         "decoded image, 2 bit": "image rows from a file at 2 bits a return"}
+FILE = {"file, 5 mm": "curlidar, file at 5 mm", "file, 1 bit": "curlidar, file at 1 bit a return"}
+PROFILE, EXACT = ", profile", ", given rows exact"
 NEAREST = {"paper": "paper, S 4x1", "edge-aware": "edge-aware in 1/r", "compact": "curlidar",
            "compact-field": "curlidar, its field alone"}
 EVERY = 4
+NO_FILE = Missing("raw samples, no file")
+WHAT = {**{method: "image rows as measured" for method in RAW},
+        **{method: "image rows, decoded" for method in IMAGE},
+        **{method: "a user's file: decode --sensor" for method in FILE}}
 COLUMNS = [
     Column("mae_m", "MAE, all pixels", "m"), Column("both_valid_mae_m", "MAE, both valid", "m"),
     Column("chamfer_m2", "Chamfer, sum of squared", "m²"), Column("iou", "IoU", check="share"),
     Column("f1", "F1", check="share"), Column("p50", "median, both valid", "m", 4),
     Column("completeness", "completeness", "share", check="share")]
+IDENTITY = [Column("method", "method"), Column("what", "from"),
+            Column("bits", "bits a return", digits=2)]
+LINES = ["Image rows as measured: what the protocol gives, rows 0, 4, .. 60 of the image, to a method "
+         "that predicts the others; `report_measure` alone does that. A user's file: rings 0, 4, .. 60 of "
+         "the sensor coded as the scan of a sensor of 16 rings, decoded with --sensor as the whole "
+         "sensor, its points projected as those of the scan are. Its rings lie in other rows of the "
+         "image than those that the protocol gives, so some of the predicted rows hold what was "
+         "coded: compare it with the lines of its kind.",
+         "Given rows are judged too, by MAE, Chamfer, IoU and F1: as they were decoded, or (given rows "
+         "exact) replaced by those of the scan, as if the raw samples were still there."]
 
 
 def judged(context):
@@ -35,10 +51,13 @@ def judged(context):
 
 def scores_of(context, scan):
     """Lines of methods."""
-    profile = profiles.without_drive(context, scan, "image", *profiles.IMAGE)
     command = [context.bin / "report_measure", "upsampling", scan.path]
-    lines = context.measure("upsampling", {"input": scan.name, "part": "protocol"},
-                            command + (["--profile", profile] if profile else []))
+    for option, kind, options in (
+            ("--profile", "image", profiles.IMAGE),
+            ("--rings-profile", "rings", ("--every", str(EVERY), *profiles.RINGS))):
+        if profile := profiles.without_drive(context, scan, kind, *options):
+            command += [option, profile]
+    lines = context.measure("upsampling", {"input": scan.name, "part": "protocol"}, command)
     return [line for line in lines if "method" in line]
 
 
@@ -62,50 +81,73 @@ def drive_means(context):
         for line in scores_of(context, scan):
             found.setdefault(drive_of(scan), {}).setdefault(line["method"], []).append(line)
     return {drive: {method: {**{key: fmean(line[key] for line in lines)
-                                for key in (*FIGURES, *MORE)}, "scans": len(lines)}
+                                for key in (*FIGURES, *MORE)}, "scans": len(lines),
+                             "bits": fmean(line["bits_per_point"] for line in lines)
+                             if "bits_per_point" in lines[0] else NO_FILE}
                     for method, lines in methods.items()} for drive, methods in found.items()}
 
 
+def plain_name(method):
+    """What the figures of a method stand on, without what was added to it."""
+    return method.replace(EXACT, "").replace(PROFILE, "")
+
+
 def title_of(method):
-    return METHODS.get(method, f"curlidar, {method}")
+    name = plain_name(method)
+    title = {**RAW, **IMAGE, **FILE}.get(name, f"curlidar, {name}")
+    title += ", profile of other drives" if PROFILE in method else ""
+    return title + (EXACT if EXACT in method else "")
+
+
+def described(method):
+    return {"method": title_of(method), "what": WHAT.get(plain_name(method), "image rows")}
 
 
 def tables(context):
     means = drive_means(context)
-    found = [protocol(context, means), drives(means)]
+    found = [upsampling_goals.table(overall(means)), protocol(context, means), drives(means)]
     nearest = nearest_rows(context)
     return [*found, nearest_table(nearest)] if nearest else found
 
 
+def overall(means):
+    """{method: means over drives}, with the number of drives."""
+    found = {}
+    for method in dict.fromkeys(method for each in means.values() for method in each):
+        drives_of = [each[method] for each in means.values() if method in each]
+        bits = [each["bits"] for each in drives_of if not isinstance(each["bits"], Missing)]
+        found[method] = {**{key: fmean(each[key] for each in drives_of)
+                            for key in (*FIGURES, *MORE)}, "drives": len(drives_of),
+                         "bits": fmean(bits) if bits else NO_FILE}
+    return found
+
+
 def protocol(context, means):
     not_published = {key: Missing("not published") for key in ("both_valid_mae_m", *MORE)}
-    rows = [{**not_published, "drives": "other", **row}
-            for row in context.published_rows("upsampling")]
-    methods = list(dict.fromkeys(method for each in means.values() for method in each))
-    for method in methods or METHODS:
-        of_drives = [each[method] for each in means.values() if method in each]
-        figures = {key: fmean(each[key] for each in of_drives) if of_drives
-                   else Missing("no KITTI scan in this run") for key in (*FIGURES, *MORE)}
-        rows.append({"method": title_of(method), "drives": len(of_drives), **figures})
+    rows = [{**not_published, "drives": "other", "what": "image rows as measured",
+             "bits": NO_FILE, **row} for row in context.published_rows("upsampling")]
+    rows += [{**described(method), **figures} for method, figures in overall(means).items()]
+    if not means:
+        why = Missing("no KITTI scan in this run")
+        rows += [{**described(method), **dict.fromkeys(
+            ("drives", "bits", *FIGURES, *MORE), why)} for method in RAW]
     return Table(
         "upsampling", "16 rings to 64 on KITTI, TULIP's protocol",
         "all pixels of the 64 x 1024 range image within 2 .. 80 m, empty ones included, rows 0, 4, "
         ".. 60 being the input; Chamfer, IoU and F1 (voxels of 0.1 m) count the points of those "
         "pixels; motion of the scans is undone first; means over drives of the means over their "
         "scans.",
-        [Column("method", "method"), Column("drives", "drives"), *COLUMNS], rows,
-        ["SuperRso was not run: its network and its weights are not available here; its row is "
+        [*IDENTITY, Column("drives", "drives"), *COLUMNS], rows,
+        [*LINES, "SuperRso was not run: its network and its weights are not available here; its row is "
          "kept for when they are.",
          "published on another split: not comparable scan by scan.",
-         "Tables and trees were fitted (program `density`) to all scans at hand of other drives "
-         "than the one that is judged. Wanted with them: MAE 1.1, Chamfer .15, IoU .38, F1 .55; "
-         "without: IoU .33; from the file of the given rows no more than 10 % worse."])
+         "Profiles, tables and trees were fitted (program `density`) to all scans at hand of other "
+         "drives than the one that is judged."])
 
 
 def drives(means):
-    columns = [Column("drive", "drive"), Column("method", "method"), Column("scans", "scans"),
-               *COLUMNS]
-    rows = [{"drive": drive, "method": title_of(method), **figures}
+    columns = [Column("drive", "drive"), *IDENTITY, Column("scans", "scans"), *COLUMNS]
+    rows = [{"drive": drive, **described(method), **figures}
             for drive, methods in means.items() for method, figures in methods.items()]
     return Table("upsampling-drives", "The same, drive by drive",
                  "as above, means over the scans of a drive.", columns,
