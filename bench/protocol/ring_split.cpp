@@ -62,8 +62,9 @@ RingSplit split_rings(const Cloud& cloud, const Detection& detection, std::uint3
       held_out[ring].push_back(cloud.positions[i]);
     }
   }
-  for (const std::vector<Vec3>& ring : held_out) {
-    add_gaps(ring, detection.sensor.columns, split.gaps);
+  for (std::uint16_t ring = 0; ring < rings; ++ring) {
+    add_gaps(held_out[ring], detection.sensor.columns, split.gaps);
+    split.gap_ring.resize(split.gaps.size(), ring);
   }
   split.coded = select(cloud, coded);
   split.coded.attributes.clear();

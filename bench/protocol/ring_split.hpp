@@ -19,6 +19,7 @@ struct RingSplit {
   std::vector<std::uint16_t> held_out_ring;  ///< their rings in the whole sensor
   /// Unit directions in which those rings had no return between two others.
   std::vector<Vec3> gaps;
+  std::vector<std::uint16_t> gap_ring;  ///< their rings in the whole sensor
 };
 
 /// Keeps every `every`-th ring. Rings below the last kept one lie between nothing and are in

@@ -188,14 +188,16 @@ TEST(SplitRings, AskInTheGapsOfTheHeldOutRings) {
 TEST(Calibrated, TakesTheMedianErrorOfTheRingFromTheOtherSectors) {
   std::vector<Vec3> returns;
   std::vector<std::uint16_t> rings;
+  std::vector<double> true_m;
   std::vector<RangeEstimate> estimates;
   for (int degree = -170; degree < 170; ++degree) {
     returns.push_back(direction_of(0, degree * 0.0174532925) * 10);
     rings.push_back(static_cast<std::uint16_t>(degree & 1));
+    true_m.push_back(10);
     estimates.push_back(told(rings.back() == 0 ? 10.03 : 9.98));
   }
   estimates.push_back(told(7));  // a gap
-  for (const RangeEstimate& estimate : calibrated(estimates, returns, rings)) {
+  for (const RangeEstimate& estimate : calibrated(estimates, returns, true_m, rings)) {
     EXPECT_NEAR(estimate.range_m, estimate.range_m > 8 ? 10 : 7, 1e-9);
   }
 }

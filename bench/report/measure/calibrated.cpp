@@ -24,12 +24,12 @@ std::pair<std::uint16_t, bool> half_of(const Vec3& p, std::uint16_t ring) {
 }  // namespace
 
 std::vector<RangeEstimate> calibrated(std::vector<RangeEstimate> told,
-                                      std::span<const Vec3> returns,
+                                      std::span<const Vec3> returns, std::span<const double> true_m,
                                       std::span<const std::uint16_t> rings) {
   std::map<std::pair<std::uint16_t, bool>, std::vector<double>> errors;
   for (std::size_t i = 0; i < returns.size(); ++i) {
     if (!told[i].valid()) continue;
-    errors[half_of(returns[i], rings[i])].push_back(norm(returns[i]) - told[i].range_m);
+    errors[half_of(returns[i], rings[i])].push_back(true_m[i] - told[i].range_m);
   }
   std::map<std::pair<std::uint16_t, bool>, double> bias;
   for (auto& [half, values] : errors) {

@@ -15,7 +15,7 @@ namespace curlidar::bench {
 /// degrees) on either side of its own: what a calibration of the held-out rings would bring.
 /// `returns` and `rings` are of the held-out returns, `told` may go on after them.
 std::vector<RangeEstimate> calibrated(std::vector<RangeEstimate> told,
-                                      std::span<const Vec3> returns,
+                                      std::span<const Vec3> returns, std::span<const double> true_m,
                                       std::span<const std::uint16_t> rings);
 
 }  // namespace curlidar::bench

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reconstruction between the rings of a real scan: rings 0, K, 2K .. are coded, the returns of the
-// rings between them are predicted in their exact directions.
-#include <limits>
+// rings between them are predicted along their own beams.
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,8 +10,10 @@
 #include "base/try.hpp"
 #include "protocol/ring_split.hpp"
 #include "report/measure/calibrated.hpp"
+#include "report/measure/held_out_lines.hpp"
 #include "report/measure/inputs.hpp"
 #include "report/measure/methods.hpp"
+#include "report/measure/own_scan.hpp"
 #include "report/measure/verbs.hpp"
 
 namespace curlidar::bench {
@@ -32,23 +33,6 @@ std::string why_not(const Detection& detection, std::uint32_t every) {
   return {};
 }
 
-/// What is asked and what is true: the held-out returns, then the gaps of their rings.
-struct Asked {
-  std::vector<Vec3> directions;
-  std::vector<double> true_m;
-};
-
-Asked asked_of(const RingSplit& split) {
-  Asked asked;
-  for (const Vec3& p : split.held_out) {
-    asked.directions.push_back(p * (1 / norm(p)));
-    asked.true_m.push_back(norm(p));
-  }
-  asked.directions.insert(asked.directions.end(), split.gaps.begin(), split.gaps.end());
-  asked.true_m.resize(asked.directions.size(), std::numeric_limits<double>::quiet_NaN());
-  return asked;
-}
-
 /// Prints what a method tells, within the paper's limits and (`whole`) within none.
 void print_method(Json line, const std::vector<RangeEstimate>& told,
                   const std::vector<RangeEstimate>& edge_aware, const Judge& limited,
@@ -56,7 +40,8 @@ void print_method(Json line, const std::vector<RangeEstimate>& told,
   line.update(to_json(limited.errors(told)));
   line["whole"] = to_json(whole.errors(told));
   line["whole"]["equal"] = to_json(whole.equal_cut(told, edge_aware));
-  if (line["method"] == "compact" || line["method"] == "compact-profile") {
+  if (line["method"].get<std::string>().starts_with("compact") &&
+      line["method"] != "compact-field") {
     line["half"] = to_json(whole.most_trusted(told, kHalf));
     line["confidence"] = to_json(whole.confidence(told));
     line["trades"] = to_json(whole.trades(told));
@@ -66,62 +51,67 @@ void print_method(Json line, const std::vector<RangeEstimate>& told,
 
 /// The methods, edge-aware interpolation the last one, then the same calibrated.
 void print_methods(const std::vector<Method>& methods, const RingSplit& split,
-                   const RangeLimits& limits) {
-  const Asked asked = asked_of(split);
+                   const AskedLines& asked, const RangeLimits& limits) {
   const Judge limited(asked.true_m, limits), whole(asked.true_m, {});
-  const std::vector<RangeEstimate> edge_aware = methods.back().sampler->tell(asked.directions);
+  const std::vector<RangeEstimate> edge_aware = methods.back().sampler->along(asked.lines);
   for (const Method& method : methods) {
     if (!method.sampler) {
       print_line(method.header());
     } else {
-      print_method(method.header(), method.sampler->tell(asked.directions), edge_aware, limited,
-                   whole);
+      print_method(method.header(), method.sampler->along(asked.lines), edge_aware, limited, whole);
     }
   }
   print_method({{"method", "edge-aware-calibrated"}, {"setting", "raw samples"}},
-               calibrated(edge_aware, split.held_out, split.held_out_ring), edge_aware, limited,
-               whole);
+               calibrated(edge_aware, split.held_out, asked.true_m, split.held_out_ring),
+               edge_aware, limited, whole);
+}
+
+/// The beams of the sensor's rings, as far as they are known.
+const BeamModel* beams_of(const OwnScan& own) {
+  const bool known =
+      own.lattice && own.lattice->beams.beams.size() == own.rings.sensor.rings.size();
+  return known ? &own.lattice->beams : nullptr;
 }
 
 }  // namespace
 
 Status held_out(const Arguments& arguments) {
   CURLIDAR_TRY_ASSIGN(every, arguments.number("every", 2, 2, 64));
-  std::shared_ptr<const DensityProfile> profile;
-  if (const std::string name = arguments.option("profile", ""); !name.empty()) {
-    CURLIDAR_TRY_ASSIGN(loaded, load_density_profile(name));
-    profile = std::move(loaded);
-  }
+  CURLIDAR_TRY_ASSIGN(profile, density_profile_of(arguments, "profile"));
+  CURLIDAR_TRY_ASSIGN(confidence, density_profile_of(arguments, "confidence"));
   CURLIDAR_TRY_ASSIGN(scan, read_scan(arguments));
-  CURLIDAR_TRY_ASSIGN(detection, scan.settings.sensor
-                                     ? assign_rings(scan.cloud, *scan.settings.sensor)
-                                     : detect_sensor(scan.cloud));
-  if (const std::string reason = why_not(detection, every); !reason.empty()) {
+  CURLIDAR_TRY_ASSIGN(own, own_scan(scan));
+  if (const std::string reason = why_not(own.rings, every); !reason.empty()) {
     print_line({{"skipped", reason}});
     return {};
   }
-  const RingSplit split = split_rings(scan.cloud, detection, every);
+  const RingSplit split = split_rings(own.cloud, own.rings, every);
+  const BeamModel* beams = beams_of(own);
   const EncodeSettings paper = for_fewer_rings(scan.settings, split.sensor, every);
   CURLIDAR_TRY_ASSIGN(limits, limits_of(split.coded, paper));
   print_line({{"preset", scan.preset},
-              {"sensor", detection.sensor.name},
-              {"rings_from", to_string(detection.source)},
-              {"rings", detection.sensor.rings.size()},
+              {"sensor", own.rings.sensor.name},
+              {"rings_from", to_string(own.rings.source)},
+              {"rings", own.rings.sensor.rings.size()},
               {"rings_coded", split.sensor.rings.size()},
               {"returns_coded", split.coded.size()},
               {"returns_held_out", split.held_out.size()},
               {"gaps", split.gaps.size()},
+              {"motion_undone", own.motion_undone},
+              {"beams_known", beams != nullptr},
               {"min_range_m", limits.min_m},
               {"max_range_m", limits.max_m}});
-  const std::vector<Method> methods =
-      make_methods({.cloud = &split.coded,
-                    .paper = paper,
-                    .compact_sensor = split.sensor,  // or it might find the whole sensor again
-                    .ring_of_point = split.ring_of_point,
-                    .ring_elevations = split.elevations,
-                    .columns = split.sensor.columns,
-                    .profile = std::move(profile)});
-  print_methods(methods, split, limits);
+  const MethodInput input{.cloud = &split.coded,
+                          .paper = paper,
+                          .compact_sensor = split.sensor,  // or it might find the whole sensor
+                          .ring_of_point = split.ring_of_point,
+                          .ring_elevations = split.elevations,
+                          .columns = split.sensor.columns,
+                          .profile = std::move(profile),
+                          .confidence = std::move(confidence)};
+  std::vector<Method> methods = fine_methods(input);
+  for (Method& method : make_methods(input)) methods.push_back(std::move(method));
+  print_methods(methods, split, lines_of(split, beams), limits);
   return {};
 }
 

@@ -32,6 +32,13 @@ Result<Scan> read_scan(const Arguments& arguments) {
   return scan;
 }
 
+Result<std::shared_ptr<const DensityProfile>> density_profile_of(const Arguments& arguments,
+                                                                 const std::string& option) {
+  const std::string name = arguments.option(option, "");
+  if (name.empty()) return std::shared_ptr<const DensityProfile>();
+  return load_density_profile(name);
+}
+
 EncodeSettings of_profile(EncodeSettings settings, Profile profile) {
   settings.profile = profile;
   settings.paper = for_profile(settings.paper, profile);

@@ -2,9 +2,11 @@
 // What the paper's comparisons start from: a scan, its sensor, its preset and its gridded cloud.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "curlidar/codec.hpp"
+#include "curlidar/dense.hpp"
 #include "report/measure/arguments.hpp"
 #include "report/measure/judge.hpp"
 
@@ -20,6 +22,10 @@ struct Scan {
 /// Reads the scan named by the first word; --preset (else the suggested one) and --sensor (else
 /// found in the scan) say how to take it.
 Result<Scan> read_scan(const Arguments& arguments);
+
+/// The density profile that an option names; none if the option is not given.
+Result<std::shared_ptr<const DensityProfile>> density_profile_of(const Arguments& arguments,
+                                                                 const std::string& option);
 
 /// The settings as the profile starts from them.
 EncodeSettings of_profile(EncodeSettings settings, Profile profile);

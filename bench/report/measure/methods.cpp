@@ -6,12 +6,14 @@
 #include <fmt/format.h>
 
 #include "curlidar/dense.hpp"
+#include "dense/density_profile.hpp"
 #include "report/measure/codecs.hpp"
 
 namespace curlidar::bench {
 namespace {
 
 constexpr double kCompactBits = 1;
+constexpr double kFineError_m = 0.005;
 
 /// The method of a file, encoded and decoded, with the field as it is; or the reason why not.
 Method coded_method(std::string name, std::string setting, const Cloud& cloud,
@@ -42,12 +44,52 @@ Method coded_method(std::string name, std::string setting, const Cloud& cloud,
   return method;
 }
 
-std::shared_ptr<const RingSamples> samples_of(const MethodInput& input) {
-  return std::make_shared<const RingSamples>(input.cloud->positions, input.ring_of_point,
-                                             input.ring_elevations, input.columns);
+Method compact_field(const MethodInput& input, EncodeSettings settings, std::string name,
+                     std::string setting) {
+  settings.sensor = input.compact_sensor;
+  return coded_method(std::move(name), std::move(setting), *input.cloud, settings);
 }
 
-Method sample_method(std::string name, const std::shared_ptr<const RingSamples>& samples,
+/// `profile` with the confidence of another.
+std::shared_ptr<const DensityProfile> with_confidence(
+    const std::shared_ptr<const DensityProfile>& profile,
+    const std::shared_ptr<const DensityProfile>& confidence) {
+  if (!profile || !confidence) return profile ? profile : confidence;
+  auto both = std::make_shared<DensityProfile>(*profile);
+  both->confidence = confidence->confidence;
+  return both;
+}
+
+/// A field made dense, without and with a profile.
+std::vector<Method> dense_methods(const MethodInput& input, const Method& field,
+                                  const std::string& name) {
+  const auto dense = [&](const std::string& called,
+                         const std::shared_ptr<const DensityProfile>& profile) {
+    Method method = field;
+    method.name = called;
+    if (!field.field) return method;
+    method.field =
+        dense_field(field.field, {.profile = with_confidence(profile, input.confidence)});
+    method.sampler = std::make_shared<FieldSampler>(method.field);
+    return method;
+  };
+  std::vector<Method> methods{dense(name, nullptr)};
+  if (!input.profile) return methods;
+  methods.push_back(dense(name + "-profile", input.profile));
+  if (!field.field) return methods;
+  if (const Status fits = check_density_profile(*input.profile, *field.field); !fits) {
+    methods.back().skipped = fits.error().message;
+    methods.back().sampler = nullptr;
+  }
+  return methods;
+}
+
+std::shared_ptr<const SampledRings> samples_of(const MethodInput& input) {
+  return std::make_shared<const SampledRings>(SampledRings{
+      input.cloud->positions, input.ring_of_point, input.ring_elevations, input.columns});
+}
+
+Method sample_method(std::string name, const std::shared_ptr<const SampledRings>& samples,
                      Mixing mixing) {
   Method method;
   method.name = std::move(name);
@@ -87,25 +129,18 @@ Method baseline_method(const Cloud& cloud, EncodeSettings settings) {
 }
 
 std::vector<Method> compact_methods(const MethodInput& input) {
-  EncodeSettings settings = compact_of_scan(CompactTarget::bits_per_point, kCompactBits);
-  settings.sensor = input.compact_sensor;
-  Method field = coded_method("compact-field", "1 bit a point", *input.cloud, settings);
-  Method dense = field;
-  dense.name = "compact";
-  if (dense.field) {
-    dense.field = dense_field(dense.field);
-    dense.sampler = std::make_shared<FieldSampler>(dense.field);
-  }
-  if (!input.profile) return {std::move(dense), std::move(field)};
-  Method profiled = field;
-  profiled.name = "compact-profile";
-  if (field.field) {
-    const Status fits = check_density_profile(*input.profile, *field.field);
-    if (!fits) profiled.skipped = fits.error().message;
-    profiled.field = dense_field(field.field, {.profile = input.profile});
-    profiled.sampler = fits ? std::make_shared<FieldSampler>(profiled.field) : nullptr;
-  }
-  return {std::move(dense), std::move(profiled), std::move(field)};
+  const EncodeSettings settings = compact_of_scan(CompactTarget::bits_per_point, kCompactBits);
+  Method field = compact_field(input, settings, "compact-field", "1 bit a point");
+  std::vector<Method> methods = dense_methods(input, field, "compact");
+  methods.push_back(std::move(field));
+  return methods;
+}
+
+std::vector<Method> fine_methods(const MethodInput& input) {
+  const EncodeSettings settings = compact_of_scan(CompactTarget::error, kFineError_m);
+  return dense_methods(input,
+                       compact_field(input, settings, "compact-fine", error_setting(kFineError_m)),
+                       "compact-fine");
 }
 
 Method edge_aware_method(const MethodInput& input) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "curlidar/cloud.hpp"
@@ -33,14 +34,23 @@ double mix_ranges(double a, double b, double weight, Mixing mixing) {
   return 1 / ((1 - weight) / a + weight / b);
 }
 
+std::optional<RingSamples::Sample> RingSamples::seen_from(const Viewpoint& from, const Vec3& p) {
+  const double ahead_squared = p.x * p.x + p.y * p.y - from.left_m * from.left_m;
+  if (!(ahead_squared > 0)) return std::nullopt;
+  const double ahead = std::sqrt(ahead_squared), up = p.z - from.up_m;
+  const double azimuth = azimuth_of(p) - std::atan2(from.left_m, ahead);
+  return Sample{std::remainder(azimuth, kTurn), std::atan2(up, ahead), std::hypot(ahead, up)};
+}
+
 RingSamples::RingSamples(std::span<const Vec3> positions,
                          std::span<const std::uint16_t> ring_of_point,
-                         std::vector<double> elevations, std::uint32_t columns)
+                         std::vector<double> elevations, std::uint32_t columns,
+                         const Viewpoint& from)
     : rings_(elevations.size()), elevations_(std::move(elevations)), columns_(columns) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Vec3& p = positions[i];
     if (!is_return(p) || ring_of_point[i] >= rings_.size()) continue;
-    rings_[ring_of_point[i]].push_back({azimuth_of(p), elevation_of(p), norm(p)});
+    if (const auto sample = seen_from(from, p)) rings_[ring_of_point[i]].push_back(*sample);
   }
   for (std::vector<Sample>& ring : rings_) {
     std::stable_sort(ring.begin(), ring.end(),

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,7 +17,13 @@ enum class Mixing {
   edge_aware,  ///< the same, but the nearer sample alone where ranges differ by more than 20 %
 };
 
-/// The raw samples of a scan on their rings. In a direction the two samples on either side count on
+/// Where lines of sight pass the spin axis, in the frame of their azimuth.
+struct Viewpoint {
+  double left_m = 0, up_m = 0;
+};
+
+/// The raw samples of a scan on their rings, as they are seen from a viewpoint: one that turns with
+/// the direction, as a laser does. In a direction the two samples on either side count on
 /// the ring above and on the ring below: first along each ring by azimuth, then across by
 /// elevation. Samples more than 1.5 columns away in azimuth do not count; of two rings one must
 /// have a sample, and where only one has, it must be the nearer one. Nothing lies beyond the
@@ -27,7 +34,7 @@ class RingSamples {
   /// others and slots without a return do not count. `elevations` (radians, descending) stand in
   /// for rings without a sample nearby; `columns` are those of a turn.
   RingSamples(std::span<const Vec3> positions, std::span<const std::uint16_t> ring_of_point,
-              std::vector<double> elevations, std::uint32_t columns);
+              std::vector<double> elevations, std::uint32_t columns, const Viewpoint& from = {});
 
   /// What samples around a direction come to.
   struct Mixed {
@@ -41,9 +48,6 @@ class RingSamples {
     return mix(direction, mixing).range_m;
   }
 
-  const std::vector<double>& elevations() const { return elevations_; }
-  std::uint32_t columns() const { return columns_; }
-
  private:
   struct Sample {
     double azimuth = 0, elevation = 0, range_m = 0;
@@ -53,6 +57,7 @@ class RingSamples {
     double elevation = 0, range_m = 0;
   };
 
+  static std::optional<Sample> seen_from(const Viewpoint& from, const Vec3& p);
   Seen see(std::size_t ring, double azimuth, Mixing mixing) const;
 
   std::vector<std::vector<Sample>> rings_;  ///< by azimuth

@@ -196,14 +196,6 @@ Status print_files(const OwnScan& own, const std::shared_ptr<const DensityProfil
   return {};
 }
 
-/// The profile that an option names; none if it is not given.
-Result<std::shared_ptr<const DensityProfile>> profile_of(const Arguments& arguments,
-                                                         const std::string& option) {
-  const std::string name = arguments.option(option, "");
-  if (name.empty()) return std::shared_ptr<const DensityProfile>();
-  return load_density_profile(name);
-}
-
 }  // namespace
 
 Status upsampling(const Arguments& arguments) {
@@ -219,9 +211,9 @@ Status upsampling(const Arguments& arguments) {
   CURLIDAR_TRY(print("edge-aware", interpolate(given, edge_aware)));
   const DensityProfile nominal = nominal_rows();
   CURLIDAR_TRY(print("rules", predict(rings_of(given, nominal).points(), nominal)));
-  CURLIDAR_TRY_ASSIGN(of_rings, profile_of(arguments, "rings-profile"));
+  CURLIDAR_TRY_ASSIGN(of_rings, density_profile_of(arguments, "rings-profile"));
   CURLIDAR_TRY(print_files(own, of_rings, truth, given));
-  CURLIDAR_TRY_ASSIGN(profile, profile_of(arguments, "profile"));
+  CURLIDAR_TRY_ASSIGN(profile, density_profile_of(arguments, "profile"));
   if (!profile) return {};
   if (profile->rows != kRows || profile->given_first != nominal.given_first ||
       profile->given_every != kEvery) {
