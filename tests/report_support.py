@@ -19,7 +19,7 @@ class FakeContext:
 
     def __init__(self, answer, scans=(KITTI,), scenes=(ROOM,), quick=False):
         self.answer, self.scans, self.scenes, self.quick = answer, list(scans), list(scenes), quick
-        self.bin, self.asked = Path("bin"), []
+        self.bin, self.asked, self.left_out = Path("bin"), [], None
         text = (ROOT / "bench/report/published.toml").read_text(encoding="utf-8")
         self.published = tomllib.loads(text)
 

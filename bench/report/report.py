@@ -49,6 +49,9 @@ def arguments():
     only.add_argument("--simulated", action="store_true", help="no real scans")
     only.add_argument("--real", action="store_true", help="no simulated scenes")
     parser.add_argument("--all", action="store_true", help="every scan of CURLIDAR_DATA")
+    parser.add_argument("--left-out", type=Path, metavar="DIR",
+                        help="confidence that was taught without a group of scans, GROUP.toml each "
+                             "(tools/README.md): rings held out of its scans are judged by it")
     parser.add_argument("--sections", metavar="LIST", default=",".join(SECTIONS),
                         help=f"only these, of {','.join(SECTIONS)}")
     parser.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1), metavar="N",
@@ -101,7 +104,8 @@ def context_of(options):
     published = tomllib.loads((HERE / "published.toml").read_text(encoding="utf-8"))
     options.out.mkdir(parents=True, exist_ok=True)
     return Context(options.out.resolve(), curlidar, folder, found, list(scenes),
-                   published, options.quick, options.all)
+                   published, options.quick, options.all,
+                   options.left_out.resolve() if options.left_out else None)
 
 
 def command_of(options, section=None):
@@ -109,6 +113,8 @@ def command_of(options, section=None):
     words = [Path(name).name for name in options.scans]
     words += [f"--{name}" for name in ("quick", "simulated", "real", "all")
               if getattr(options, name)]
+    if options.left_out:
+        words += ["--left-out", options.left_out.name]
     if section or options.sections != list(SECTIONS):
         words += ["--sections", section or ",".join(options.sections)]
     return f"{options.name} {shlex.join(words)}".strip()

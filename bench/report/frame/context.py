@@ -31,14 +31,15 @@ class Stopped(BaseException):
 class Context:
     """`out`: the report's folder. `scratch`: files of this run, removed when it is complete.
     `curlidar`: the command. `bin`: folder of report_measure and rate_distortion.
-    `scans`, `scenes`: real and simulated input. `published`: published.toml as it is."""
+    `scans`, `scenes`: real and simulated input. `published`: published.toml as it is. `left_out`:
+    folder of confidence taught without a group of scans each, or None."""
 
     def __init__(self, out, curlidar, bin_folder, scans, scenes, published, quick=False,
-                 every=False):
+                 every=False, left_out=None):
         self.out, self.scratch = out, out / "scratch"
         self.curlidar, self.bin = curlidar, bin_folder
         self.scans, self.scenes, self.published = scans, scenes, published
-        self.quick, self.every = quick, every
+        self.quick, self.every, self.left_out = quick, every, left_out
         self.store = Store(out / "measurements")
         self.stopping, self._started = False, time.monotonic()
         self._digests, self._making, self._lock = {}, {}, threading.Lock()

@@ -4,17 +4,21 @@ from dataclasses import replace
 
 from frame.cells import Missing
 from frame.tables import Column, Figure, Table
-from sections import continuous_borders, continuous_confidence, continuous_goals, profiles
+from sections import (continuous_borders, continuous_confidence, continuous_equal,
+                      continuous_goals, profiles)
 from sections.one_to_one import explain, plain_numbers, short, table_id, taken_as
 
 TITLE = "Continuous reconstruction"
-TABLES = ("continuous-goals-truth", "continuous-confidence", "continuous-trade",
-          "continuous-borders", "continuous-published")
+TABLES = ("continuous-goals", "continuous-goals-all", "continuous-equal-truth",
+          "continuous-confidence", "continuous-trade", "continuous-borders",
+          "continuous-published")
 FACTORS, QUICK_FACTORS = (2, 4, 8), (2, 8)
 HELD_OUT = (2, 4)  # every K-th ring coded
 NO_FILE = Missing("raw samples, no file")
 METHODS = {"baseline": "baseline", "paper": "paper", "compact": "curlidar",
            "compact-profile": "curlidar, profile of other drives",
+           "compact-fine": "curlidar at 5 mm",
+           "compact-fine-profile": "curlidar at 5 mm, profile of other drives",
            "compact-field": "curlidar, its field alone", "linear": "linear in 1/r",
            "edge-aware": "edge-aware in 1/r",
            "edge-aware-calibrated": "edge-aware, rings calibrated"}
@@ -73,16 +77,19 @@ def borders_of(context):
 
 
 def truth_lines(context):
-    """{(scene, sensor): lines of methods} of what was measured."""
-    return {(scene.name, scene.sensor): [line for line in truth_of(context, scene)
-                                         if "whole" in line] for scene in scenes_of(context)}
+    """{(scene, sensor): lines} of what was measured."""
+    return {(scene.name, scene.sensor): truth_of(context, scene) for scene in scenes_of(context)}
 
 
 def held_out_lines(context):
-    """{(scan, K): lines of methods} of the scans whose rings could be held out."""
-    found = {(scan.name, every): [line for line in held_out_of(context, scan, every)
-                                  if "whole" in line]
-             for scan in context.scans for every in HELD_OUT}
+    """{(scan, K): lines}, also of the scans whose rings could not be held out."""
+    return {(scan.name, every): held_out_of(context, scan, every)
+            for scan in context.scans for every in HELD_OUT}
+
+
+def methods_in(measured):
+    """The lines of methods that were measured, of the inputs that have any."""
+    found = {key: [line for line in lines if "whole" in line] for key, lines in measured.items()}
     return {key: lines for key, lines in found.items() if lines}
 
 
@@ -101,8 +108,10 @@ def held_out_of(context, scan, every):
     command = held_out_command(context.bin / "report_measure", scan, scan.path, every)
     profile = profiles.without_drive(context, scan, "rings", "--every", str(every),
                                      *profiles.RINGS)
+    confidence = profiles.confidence_without(context, scan)
     return context.measure("continuous", {"input": scan.name, "part": "held out", "every": every},
-                           command + (["--profile", profile] if profile else []))
+                           command + (["--profile", profile] if profile else [])
+                           + (["--confidence", confidence] if confidence else []))
 
 
 def held_out_command(program, scan, path, every):
@@ -164,8 +173,9 @@ def held_out_table(context, scan, found):
               "the other half of this scan (sectors of 10 degrees by turns). No method can know "
               "it from the coded rings."]
     return Table(table_id("continuous-held-out", scan), f"Rings held out of {scan.name}",
-                 "returns of the rings between every K-th, in their exact directions, where a "
-                 "method predicts a range within the paper's limits.",
+                 "returns of the rings between every K-th, along their own beams as far as these are "
+                 "known, where a method predicts a range within the paper's limits; motion of the "
+                 "scan is undone first.",
                  columns, rows, notes,
                  shown(held_out_command("report_measure", scan, scan.name, "K")))
 
@@ -244,10 +254,13 @@ def tables(context):
         found.append(Table(
             "continuous-left-out", "Scans whose rings were not held out", "no points.",
             [Column("input", "scan"), Column("every", "K"), Column("why", "why not")], reasons))
-    goals = [*continuous_goals.tables(truth_lines(context), held_out_lines(context)),
-             *continuous_confidence.tables(truth_lines(context), held_out_lines(context))]
-    goals.append(continuous_borders.table(borders_of(context)))
-    return [*goals, *found, published(context)]
+    taught = profiles.confidence_taught(context)
+    all_lines = truth_lines(context), held_out_lines(context)
+    measured = [methods_in(each) for each in all_lines]
+    return [*continuous_goals.tables(*all_lines, borders_of(context), taught),
+            *continuous_equal.tables(*measured, taught),
+            *continuous_confidence.tables(*measured, taught),
+            continuous_borders.table(borders_of(context)), *found, published(context)]
 
 
 def drawn(line):
@@ -255,8 +268,8 @@ def drawn(line):
         else METHODS[line["method"]]
 
 
-NAMES = ("curlidar", "curlidar, profile of other drives", "curlidar, its field alone", "baseline", "paper, S 1x1", "paper, S 2x1",
-         "paper, S 2x2", "linear in 1/r", "edge-aware in 1/r", "edge-aware, rings calibrated")
+NAMES = ("curlidar", "curlidar, profile of other drives", "curlidar, its field alone", "baseline",
+         "paper, S 1x1", "paper, S 2x1", "paper, S 2x2", "linear in 1/r", "edge-aware in 1/r", "edge-aware, rings calibrated")
 
 
 def figures(context):
@@ -265,7 +278,8 @@ def figures(context):
              for scene in scenes_of(context) for line in truth_of(context, scene) if "mean" in line]
     held = [(scan.name, every, drawn(line), line["p50"], line["p95"], line["completeness"])
             for scan in context.scans for every in HELD_OUT
-            for line in held_out_of(context, scan, every) if "mean" in line]
+            for line in held_out_of(context, scan, every)
+            if "mean" in line and "fine" not in line["method"]]
     found = []
     for name, rows, axis, title, caption in (
             ("continuous-truth", truth, "R, times the rows", "Error between the rows",
@@ -280,7 +294,8 @@ def figures(context):
                                 "the share of the directions that got a point.", "svg",
                                 f"data/{name}.csv"))
     from sections import continuous_pictures
-    found += continuous_confidence.figures(context, truth_lines(context), held_out_lines(context))
+    found += continuous_confidence.figures(context, *map(methods_in, (
+        truth_lines(context), held_out_lines(context))))
     return found + continuous_pictures.figures(context, drawn_items(context))
 
 

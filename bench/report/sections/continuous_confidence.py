@@ -25,7 +25,7 @@ def pooled(measured):
 
 
 def of_method(measured, method):
-    found = {key: [line for line in lines if line["method"] == method]
+    found = {key: [line for line in lines if line.get("method") == method and "confidence" in line]
              for key, lines in measured.items()}
     return {key: lines for key, lines in found.items() if lines}
 
@@ -37,7 +37,8 @@ def kinds(measured_truth, measured_held_out):
     return {kind: measured for kind, measured in found.items() if measured}
 
 
-def reliability(measured_by_kind):
+def bins(measured_by_kind):
+    """A row for every bin that holds a line."""
     rows = []
     for kind, measured in measured_by_kind.items():
         for i, (count, told, hits) in enumerate(pooled(measured)):
@@ -47,19 +48,25 @@ def reliability(measured_by_kind):
                 rows.append({"kind": kind, "bin": f"{i / BINS:.1f} .. {(i + 1) / BINS:.1f}",
                              "count": count, "told": told, "observed": observed, "off": off,
                              "met": "few" if count < FEWEST else "yes" if off <= WITHIN else "no"})
+    return rows
+
+
+def reliability(measured_by_kind, taught):
+    rows = bins(measured_by_kind)
     columns = [Column("kind", "lines"), Column("bin", "told confidence"), Column("count", "lines"),
                Column("told", "mean told", "share", check="share"),
                Column("observed", "within 5 cm", "share", check="share"),
                Column("off", "apart"), Column("met", f"within {WITHIN:g}")]
     return Table(
-        "continuous-confidence", "Told confidence against the observed share within 5 cm",
+        "continuous-confidence", "Told confidence against the observed share within 5 cm; of real "
+        f"scans {taught}",
         "all lines that are told a range, believed or not: rays between the rings of simulated "
         "scans of seeds that nothing was trained on, and returns and gaps of held-out rings.",
         columns, rows_or(rows, columns, "no scan was measured"),
         ["Pooled over all scans, sensors, factors and K. Where no surface is, none is within 5 cm; "
          "in the gaps of held-out rings, where no return came back, neither.",
          "What tells confidence was fitted to simulated scans of other seeds and to held-out rings "
-         "of real scans, some of these among them (docs/density.md).",
+         "of real scans (docs/density.md).",
          f"few: less than {FEWEST} lines."])
 
 
@@ -90,9 +97,9 @@ def trade_table(measured_by_kind):
         ["data/continuous-trade.csv has every twentieth, as far as some are left."])
 
 
-def tables(measured_truth, measured_held_out):
+def tables(measured_truth, measured_held_out, taught):
     by_kind = kinds(measured_truth, measured_held_out)
-    return [reliability(by_kind), trade_table(by_kind)]
+    return [reliability(by_kind, taught), trade_table(by_kind)]
 
 
 def figures(context, measured_truth, measured_held_out):

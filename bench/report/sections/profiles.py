@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Density profiles fitted to the scans at hand, without the drive that is judged by them."""
+"""Density profiles fitted to the scans at hand, without the drive that is judged by them, and
+confidence taught without it."""
 from pathlib import Path
 
 from frame.context import OUTPUT
@@ -26,3 +27,22 @@ def without_drive(context, scan, kind, *options):
     lines = "".join(f"{drive_of(each)} {each.path}\n" for each in others)
     return context.made(".toml", [context.bin / PROGRAM, kind, context.made_text(".txt", lines),
                                   OUTPUT, *options, "--threads", "1"])
+
+
+def confidence_without(context, scan):
+    """The file of --left-out that tells confidence without what the scan's group taught; None where
+    there is none."""
+    if context.left_out is None:
+        return None
+    path = context.left_out / (drive_of(scan).replace("/", "-") + ".toml")
+    return path if path.is_file() else None
+
+
+def confidence_taught(context):
+    """By what the confidence of held-out rings was taught, for titles."""
+    without = [confidence_without(context, scan) is not None for scan in context.scans]
+    if without and all(without):
+        return "taught without the scan's own group"
+    if any(without):
+        return "taught without the scan's own group as far as that was made, else by these scans too"
+    return "taught by these scans too"
