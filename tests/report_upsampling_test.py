@@ -77,6 +77,8 @@ class GoalsTest(unittest.TestCase):
     def test_misses_are_told_with_their_size(self):
         self.assertEqual(goals.at_most("MAE", "a", 1.1, 1.1)["met"], "yes")
         self.assertEqual(goals.at_most("MAE", "a", 1.21, 1.1)["met"], "no, 10 % over")
+        self.assertEqual(goals.at_most("MAE", "a", 1.003, 1)["met"], "no, 0.3 % over")
+        self.assertEqual(goals.at_most("jumps", "a", 3, 0)["met"], "no")
         self.assertEqual(goals.at_least("IoU", "a", .39, .38)["met"], "yes")
         self.assertEqual(goals.at_least("IoU", "a", .19, .38)["met"], "no, 100 % short")
 

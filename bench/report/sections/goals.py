@@ -25,7 +25,8 @@ def said(value, limit, way="over"):
     """Whether value <= limit, and by how much not."""
     if value <= limit:
         return "yes"
-    return f"no, {100 * (value / limit - 1):.0f} % {way}" if limit > 0 else "no"
+    percent = 100 * (value / limit - 1) if limit > 0 else 0
+    return f"no, {percent:.{0 if percent >= 1 else 1}f} % {way}" if percent else "no"
 
 
 def is_met(row):
