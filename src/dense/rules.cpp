@@ -295,7 +295,9 @@ Guess beyond_edge(const RingPoints& points, const Look& look) {
   const bool near = std::abs(look.line.side(edge.place)) <= 0.5 * step * edge.r;
   Guess guess{top ? DenseMode::only_below : DenseMode::only_above, edge.r, top ? 0.0 : 1.0};
   const bool gentle = std::abs(inner.r - edge.r) <= kGentle * std::min(inner.r, edge.r);
-  if ((!top || (near && gentle)) && make_plane(inner, edge)) {
+  const bool goes_on = top ? near && gentle && make_plane(inner, edge)
+                           : same_range(inner, edge) || on_ground(look.line, edge, inner);
+  if (goes_on) {
     const double there = met(look.line.inverse_to(inner.place, edge.place));
     if (there > edge.r / 2 && there < 2 * edge.r) guess.r = there;
   }
