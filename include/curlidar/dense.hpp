@@ -39,12 +39,15 @@ struct DenseSettings {
   std::shared_ptr<const DensityProfile> profile{};
 };
 
-/// The field of a decoded scan made to be asked between its rows and columns. On its own cells it
-/// says what the field says, but that neighbouring patches of one surface are made to meet. Between
-/// them a surface is interpolated from the returns of the two rings that are above and below as
-/// seen from where the line of sight starts, planes exactly; where the two rings saw different
-/// surfaces one of them is chosen, never a place between; where neither saw any, there is nothing.
-/// O(cells) to make, about 1 us a line of sight.
+/// The field of a decoded scan made to be asked anywhere. Every member tells of one and the same
+/// surface: evaluate_row at a row and column says what range_along says along that line (only where
+/// nothing can be guessed at all, and no masks are wanted, it says what the field says). Through
+/// the coded returns it passes as the sensor saw them: without what their rings measure too far,
+/// and moved by up to half a step of the coding where patches of one surface are made to meet.
+/// Between them a surface is interpolated from the returns of the two rings that are above and
+/// below as seen from where the line of sight starts, planes exactly; where the two rings saw
+/// different surfaces one of them is chosen, never a place between; where neither saw any, there is
+/// nothing. O(cells) to make, 1.5 to 2.5 us a line of sight.
 std::shared_ptr<const Field> dense_field(std::shared_ptr<const Field> field,
                                          const DenseSettings& settings = {});
 

@@ -83,9 +83,12 @@ class Field {
   virtual const Lattice& lattice() const = 0;
 
   /// Ranges along one line of constant (fractional) lattice row, metres. Element i looks at
-  /// fractional column `columns[i]` (any real number; wraps). ranges[i] is NaN where nothing is
-  /// represented, or, with `masked`, where the masks say that no surface is to be believed.
-  /// columns and ranges have the same size. Ascending columns are fastest.
+  /// fractional column `columns[i]` (any real number; wraps; NaN and infinite ones have NaN
+  /// ranges). ranges[i] is NaN where nothing is represented, or, with `masked`, where no surface is
+  /// to be believed. It is what range_along says along the same line (see row_line), of surfaces as
+  /// the sensor would have seen them without the offsets of its rings (see ring_offset_m): coded
+  /// ranges as they are come from decode, not from here. Columns of a lattice of rays are not its
+  /// cells: these look where cell_points lie. columns and ranges have the same size.
   virtual void evaluate_row(double row, std::span<const double> columns, bool masked,
                             std::span<double> ranges) const = 0;
 
@@ -120,7 +123,8 @@ class Field {
   /// The patch that each cell's range was coded with, row-major; empty where there are none. Ranges
   /// of one patch err together.
   virtual std::vector<std::int32_t> cell_patches() const { return {}; }
-  /// What the coded ranges of a row have added to those of cell_points, metres.
+  /// What the coded ranges of a row have added to those of cell_points, metres: what the ring
+  /// measures too far. It is in no surface that the field tells.
   virtual double ring_offset_m(std::uint32_t row) const;
   /// What coded ranges are rounded to, metres; 0: nothing is known of that.
   virtual double step_m() const { return 0; }

@@ -38,6 +38,8 @@ class Lattice {
   double row_of(double elevation) const;
   /// Fractional column of an azimuth, in [0, columns).
   double column_of(double azimuth) const;
+  /// The same column in [0, columns); 0 for what is no number or too large to tell.
+  double within_turn(double column) const;
 
  private:
   std::vector<double> elevations_;

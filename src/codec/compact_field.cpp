@@ -43,12 +43,6 @@ compact::Direction to_direction(double x, double y, double z) {
   return {unit(x), unit(y), unit(z)};
 }
 
-double within_turn(double column, const Lattice& lattice) {
-  const double width = lattice.columns();
-  const double within = column - std::floor(column / width) * width;
-  return within < width ? within : 0;
-}
-
 /// For each row the nearest that is known, of two the one above; their count where none is.
 std::vector<std::uint32_t> nearest_known(const std::vector<bool>& known) {
   const auto rows = static_cast<std::uint32_t>(known.size());
@@ -143,7 +137,7 @@ void CompactField::find_corrections() {
 
 CompactField::Between CompactField::between(double row) const {
   const std::uint32_t last = lattice_.rows() - 1;
-  const double inside = std::clamp(row, 0.0, static_cast<double>(last));
+  const double inside = std::fmin(std::fmax(row, 0.0), static_cast<double>(last));
   const auto top = static_cast<std::uint32_t>(inside);
   return {top, std::min(top + 1, last), inside - top};
 }
@@ -237,19 +231,17 @@ double CompactField::range_at(const Corners& corners, const compact::Sight& sigh
 void CompactField::evaluate_row(double row, std::span<const double> columns, bool masked,
                                 std::span<double> ranges) const {
   const Between rows = between(row);
-  // Lengths along rays have their phase: it is where they start, not an error of their ranges.
-  const double ring_offset = rows.down == 0 && !scan_.table.range_offset.empty()
-                                 ? metres(scan_.table.range_offset[rows.top])
-                                 : 0.0;
   const double elevation = lattice_.elevation(row);
   const double flat = std::cos(elevation), up = std::sin(elevation);
   compact::Sight sight;
   sight.origin = origin_of(rows);
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    const double column = within_turn(columns[i], lattice_);
+    ranges[i] = kNan;
+    if (!std::isfinite(row) || !std::isfinite(columns[i])) continue;
+    const double column = lattice_.within_turn(columns[i]);
     const double azimuth = lattice_.azimuth(column);
     sight.direction = to_direction(flat * std::cos(azimuth), flat * std::sin(azimuth), up);
-    ranges[i] = range_at(corners_of(rows, column), sight, masked) + ring_offset;
+    ranges[i] = range_at(corners_of(rows, column), sight, masked);
   }
 }
 
@@ -260,7 +252,7 @@ void CompactField::place_row(double row, std::span<const double> columns,
   const double base = lattice_.elevation(row);
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const double r = ranges[i];
-    const double azimuth = lattice_.azimuth(columns[i]);
+    const double azimuth = lattice_.azimuth(lattice_.within_turn(columns[i]));
     const double elevation = base + (!rays_ && r > 0 ? height / r : 0);
     const double flat = std::cos(elevation);
     points[i] = {r * flat * std::cos(azimuth), r * flat * std::sin(azimuth),
@@ -275,7 +267,7 @@ void CompactField::place_row(double row, std::span<const double> columns,
 
 std::size_t CompactField::nearest_cell(double row, double column) const {
   if (!rays_) return Field::nearest_cell(row, column);
-  const Corners corners = corners_of(between(row), within_turn(column, lattice_));
+  const Corners corners = corners_of(between(row), lattice_.within_turn(column));
   const Corner* best = nullptr;
   for (const Corner& corner : corners) {
     if (scan_.range[corner.cell] <= 0 || corner.weight <= 0) continue;

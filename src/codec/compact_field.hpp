@@ -17,9 +17,9 @@ namespace curlidar {
 
 /// A direction takes the surfaces of the four cells around it, each moved by its cell's residual,
 /// weighted by nearness. It needs no masks of its own: a direction is believed where coded cells
-/// hold at least half of the weight and their surfaces agree to 0.3 m + 10 %. On the lattice's rows
-/// the range offset of the ring is added, so that every cell has exactly its coded range; between
-/// them it would be an error of the sensor drawn into the surface.
+/// hold at least half of the weight and their surfaces agree to 0.3 m + 10 %. On a cell it has the
+/// coded range less the range offset of the ring: that is an error of the sensor, drawn into a
+/// surface it would be a rib.
 ///
 /// Cells that are the sensor's own rays make no difference to who asks: rows are theirs, columns as
 /// many as firings but evenly around the turn. Lines of sight start on the spin axis, at the height

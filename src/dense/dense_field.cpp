@@ -27,8 +27,13 @@ Vec3 unit(const Vec3& direction) {
   return near * (1 / norm(near));
 }
 
+/// A line of sight that starts where anything is known.
 bool is_sight(const Sightline& line) {
-  return is_finite(line.origin) && is_finite(line.direction) && line.direction != Vec3{};
+  constexpr double kFarthest_m = 1e5;
+  const Vec3& o = line.origin;
+  const double away = std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)});
+  return is_finite(o) && away < kFarthest_m && is_finite(line.direction) &&
+         line.direction != Vec3{};
 }
 
 /// The line as it crosses the half-plane of an azimuth.
@@ -144,39 +149,26 @@ void DenseField::range_along(std::span<const Sightline> lines, std::span<RangeEs
 
 double DenseField::along_row(const RowLine& row, PlaneLine line, double column, bool masked) const {
   if (!std::isfinite(column)) return kNan;
-  line.azimuth = std::remainder(lattice().azimuth(column), 2 * std::numbers::pi);
+  line.azimuth =
+      std::remainder(lattice().azimuth(lattice().within_turn(column)), 2 * std::numbers::pi);
   Found found = find_in_plane(line);
   judge(found);
   if (!(found.guess.r > 0) || (masked && found.guess.seen != Seen::surface)) return kNan;
   return row.range_of(found.guess.r * line.along.rho, row.height_m + found.guess.r * line.along.z);
 }
 
-std::optional<std::size_t> DenseField::cell_at(double row, double column) const {
-  const double width = lattice().columns();
-  const double within = column - std::floor(column / width) * width;
-  if (!(within < width) || within != std::floor(within)) return std::nullopt;
-  if (!occupied(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(within))) {
-    return std::nullopt;
-  }
-  return static_cast<std::size_t>(row * width + within);
-}
-
 void DenseField::evaluate_row(double row, std::span<const double> columns, bool masked,
                               std::span<double> ranges) const {
   if (points_.empty()) return field_->evaluate_row(row, columns, masked, ranges);
-  const bool coded = row == std::floor(row) && row >= 0 && row < lattice().rows();
-  const double offset = coded ? field_->ring_offset_m(static_cast<std::uint32_t>(row)) : 0;
+  if (!std::isfinite(row)) return std::fill(ranges.begin(), ranges.end(), kNan);
   const RowLine line = field_->row_line(row);
   const PlaneLine plane{
       0, {0, line.height_m}, {std::cos(line.elevation), std::sin(line.elevation)}};
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    // A cell keeps what the file says of it, but for the joints of patches.
-    const std::optional<std::size_t> cell = coded ? cell_at(row, columns[i]) : std::nullopt;
-    ranges[i] = cell ? kNan : along_row(line, plane, columns[i], masked) + offset;
-    if (cell || (std::isnan(ranges[i]) && !masked)) {
+    ranges[i] = along_row(line, plane, columns[i], masked);
+    if (std::isnan(ranges[i]) && !masked) {
       field_->evaluate_row(row, columns.subspan(i, 1), masked, ranges.subspan(i, 1));
     }
-    if (cell) ranges[i] += points_.joint_m(*cell);
   }
 }
 

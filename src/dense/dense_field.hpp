@@ -22,6 +22,9 @@ class DenseField final : public Field {
  public:
   /// `field` is not null.
   DenseField(std::shared_ptr<const Field> field, const DenseSettings& settings);
+  // The rules of rows refer to the points of this one.
+  DenseField(const DenseField&) = delete;
+  DenseField& operator=(const DenseField&) = delete;
 
   const Lattice& lattice() const override { return field_->lattice(); }
   void evaluate_row(double row, std::span<const double> columns, bool masked,
@@ -62,10 +65,8 @@ class DenseField final : public Field {
   /// What the profile says of it, if the line is that of a row.
   void judge(Found& found) const;
   /// Where the line of a row, turned to a column, meets what is believed or, not `masked`, guessed;
-  /// as a range of the row.
+  /// as a range of the row; else NaN.
   double along_row(const RowLine& row, PlaneLine line, double column, bool masked) const;
-  /// The coded cell whose middle a column of a row of the lattice is.
-  std::optional<std::size_t> cell_at(double row, double column) const;
 
   std::shared_ptr<const Field> field_;
   RingPoints points_;

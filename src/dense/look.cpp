@@ -13,25 +13,22 @@ namespace {
 constexpr double kNeighbours = 1.9;
 /// Samples beside each other on one surface: ratio of their distances from the axis.
 constexpr double kSameAlong = 1.1;
+/// Radians. Samples farther apart, of few columns, have no straight line between them.
+constexpr double kWidest = 1;
 
 PlanePoint place_of(const RingPoint& p) {
   return {p.rho, p.z};
 }
 
-/// Where the straight line between two samples crosses the half-plane; the share of the right one.
-double crossing(const RingSample& left, const RingSample& right, double step) {
-  const double l = left.point->rho * std::sin(std::min(left.away * step, 1.5));
-  const double r = right.point->rho * std::sin(std::min(right.away * step, 1.5));
-  return l + r > 0 ? l / (l + r) : 0;
-}
-
+/// Where the straight line between two samples crosses the half-plane.
 void mix(RingLook& look, double step) {
   const RingPoint &left = *look.left.point, &right = *look.right.point;
-  const double share = crossing(look.left, look.right, step);
+  const double to_left = left.rho * std::sin(look.left.away * step);
+  const double to_right = right.rho * std::sin(look.right.away * step);
+  const double across = to_left + to_right;
+  const double share = across > 0 ? to_left / across : 0;
   const double far = (look.left.away + look.right.away) * step;
-  const double along = left.rho * std::sin(std::min(look.left.away * step, 1.5)) +
-                       right.rho * std::sin(std::min(look.right.away * step, 1.5));
-  look.place.rho = along > 0 ? left.rho * right.rho * std::sin(far) / along : left.rho;
+  look.place.rho = across > 0 ? left.rho * right.rho * std::sin(far) / across : left.rho;
   look.place.z = left.z + (right.z - left.z) * share;
   look.right_weight = share;
   look.mixed = true;
@@ -76,7 +73,8 @@ RingLook look_at_ring(const RingPoints& points, const PlaneLine& line, std::ptrd
   const bool to_right = right.away < left.away;
   const bool both =
       std::max(left.away, right.away) <= RingLook::kFill || left.away + right.away <= kNeighbours;
-  if (left.away > 0 && both && alike(left.point->rho, right.point->rho, kSameAlong)) {
+  const bool wide = (left.away + right.away) * points.column_step() > kWidest;
+  if (left.away > 0 && both && !wide && alike(left.point->rho, right.point->rho, kSameAlong)) {
     mix(look, points.column_step());
   } else {
     look.place = place_of(to_right ? *right.point : *left.point);

@@ -28,7 +28,7 @@ MotionTable::MotionTable(const Field& field) {
 }
 
 RigidMotion MotionTable::at(double azimuth) const {
-  const double place = std::clamp((azimuth / kPi + 1) / 2, 0.0, 1.0) * kSteps;
+  const double place = std::fmin(std::fmax((azimuth / kPi + 1) / 2, 0.0), 1.0) * kSteps;
   const auto node = std::min(static_cast<std::size_t>(place), kSteps - 1);
   const double share = place - static_cast<double>(node);
   const RigidMotion &a = nodes_[node], &b = nodes_[node + 1];

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <span>
 
 namespace curlidar {
@@ -12,13 +13,18 @@ namespace {
 
 constexpr std::size_t kFade = 4;  ///< cells on either side
 constexpr double kMostSteps = 0.5;
+/// Columns so much farther apart than those beside them have a gap between them.
+constexpr double kGap = 1.9;
 
 /// One row around the turn.
 class Row {
  public:
   Row(std::span<const Vec3> points, std::span<const std::int32_t> patches, double height_m)
       : patches_(patches), moves_(points.size(), 0) {
-    for (const Vec3& p : points) ranges_.push_back(norm({p.x, p.y, p.z - height_m}));
+    for (const Vec3& p : points) {
+      ranges_.push_back(norm({p.x, p.y, p.z - height_m}));
+      azimuths_.push_back(azimuth_of(p));
+    }
   }
 
   /// What each cell moves by.
@@ -40,6 +46,10 @@ class Row {
     return patches_[cell] == patch && patch >= 0 && ranges_[cell] > 0;
   }
 
+  double turn(std::size_t from, std::size_t to) const {
+    return std::abs(std::remainder(azimuths_[to] - azimuths_[from], 2 * std::numbers::pi));
+  }
+
   /// The border behind a cell, if there is one.
   void join_behind(std::size_t left, double most_m) {
     const std::size_t right = on(left, 1);
@@ -47,6 +57,7 @@ class Row {
     if (patch == next || !of(left, patch) || !of(right, next)) return;
     const std::size_t left2 = back(left, 1), right2 = on(right, 1);
     if (!of(left2, patch) || !of(right2, next)) return;
+    if (turn(left, right) > kGap * std::max(turn(left2, left), turn(right, right2))) return;
     const double before = ranges_[left] - ranges_[left2];
     const double behind = ranges_[right2] - ranges_[right];
     const double step = ranges_[right] - ranges_[left] - (before + behind) / 2;
@@ -64,7 +75,7 @@ class Row {
   }
 
   std::span<const std::int32_t> patches_;
-  std::vector<double> ranges_, moves_;
+  std::vector<double> ranges_, azimuths_, moves_;
 };
 
 }  // namespace

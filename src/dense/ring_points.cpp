@@ -63,7 +63,7 @@ double turn_between(double from, double to) {
 
 RingPoints::RingPoints(const Field& field) : columns_(field.lattice().columns()) {
   const std::vector<Vec3> points = field.cell_points();
-  joints_ = patch_joints(field, points);
+  const std::vector<float> joints = patch_joints(field, points);
   rows_ = from_the_top(field.lattice().elevations());
   std::vector<std::vector<RingPoint>> rings(rows_.size());
   for (std::size_t ring = 0; ring < rings.size(); ++ring) {
@@ -72,7 +72,8 @@ RingPoints::RingPoints(const Field& field) : columns_(field.lattice().columns())
     heights_.push_back(line.height_m);
     for (std::uint32_t column = 0; column < columns_; ++column) {
       const std::size_t cell = std::size_t{rows_[ring]} * columns_ + column;
-      add(rings[ring], moved_out(points[cell], line.height_m, joint_m(cell)),
+      const double joint_m = joints.empty() ? 0 : joints[cell];
+      add(rings[ring], moved_out(points[cell], line.height_m, joint_m),
           static_cast<std::uint32_t>(cell));
     }
   }
@@ -113,8 +114,8 @@ void RingPoints::take(std::vector<std::vector<RingPoint>> rings) {
 }
 
 std::size_t RingPoints::bin(double azimuth) const {
-  const double at = (azimuth + kPi) / kTurn * columns_;
-  return std::min(static_cast<std::size_t>(std::max(at, 0.0)), std::size_t{columns_} - 1);
+  const double at = std::fmax((azimuth + kPi) / kTurn * columns_, 0.0);
+  return static_cast<std::size_t>(std::fmin(at, columns_ - 1.0));
 }
 
 std::size_t RingPoints::first_beyond(std::size_t ring, double azimuth) const {

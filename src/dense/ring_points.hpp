@@ -32,6 +32,7 @@ struct RingSample {
 /// Rings are numbered from the top; those of a field are its rows by elevation.
 class RingPoints {
  public:
+  /// The returns of a field, its patches made to meet (patch_joints).
   explicit RingPoints(const Field& field);
   /// Raw samples: `ring_of_point[i]` is the ring of positions[i], below elevations.size(); others
   /// and slots without a return are left out. `elevations` in radians, descending; `columns` are
@@ -49,9 +50,6 @@ class RingPoints {
   double height_m(std::size_t ring) const { return heights_[ring]; }
   /// The field's row of a ring.
   std::uint32_t row(std::size_t ring) const { return rows_[ring]; }
-
-  /// By how much a cell of the field was moved for patches to meet, metres of its range.
-  double joint_m(std::size_t cell) const { return joints_.empty() ? 0 : joints_[cell]; }
 
   /// The samples of a ring by azimuth.
   std::span<const RingPoint> ring(std::size_t ring) const {
@@ -76,7 +74,6 @@ class RingPoints {
   std::vector<std::uint32_t> rows_;
   std::uint32_t columns_ = 0;
   double column_step_ = 0;
-  std::vector<float> joints_;       ///< of each cell; empty: none
   std::vector<RingPoint> points_;   ///< ring by ring, by azimuth
   std::vector<std::size_t> begin_;  ///< of each ring in points_
   std::vector<std::uint32_t>

@@ -106,11 +106,9 @@ void Field::place_row(double row, std::span<const double> columns, std::span<con
 
 std::size_t Field::nearest_cell(double row, double column) const {
   const std::size_t rows = lattice().rows(), width = lattice().columns();
-  const double inside = std::clamp(std::round(row), 0.0, static_cast<double>(rows - 1));
-  const double turns = std::floor(column / static_cast<double>(width));
-  const double within = column - turns * static_cast<double>(width);
+  const double inside = std::fmin(std::fmax(std::round(row), 0.0), static_cast<double>(rows - 1));
   return static_cast<std::size_t>(inside) * width +
-         static_cast<std::size_t>(std::round(within)) % width;
+         static_cast<std::size_t>(std::round(lattice().within_turn(column))) % width;
 }
 
 std::vector<Vec3> Field::cell_points() const {

@@ -33,7 +33,8 @@ Lattice Lattice::from_rings(std::vector<double> elevations, std::uint32_t column
 
 double Lattice::elevation(double row) const {
   if (rows() == 1) return elevations_[0];
-  const double base = std::clamp(std::floor(row), 0.0, static_cast<double>(rows() - 2));
+  // What is no number has none of the elevations, but a row it is counted from.
+  const double base = std::fmin(std::fmax(std::floor(row), 0.0), static_cast<double>(rows() - 2));
   const auto u = static_cast<std::size_t>(base);
   return elevations_[u] + (elevations_[u + 1] - elevations_[u]) * (row - base);
 }
@@ -53,9 +54,12 @@ double Lattice::row_of(double elevation) const {
 }
 
 double Lattice::column_of(double azimuth) const {
-  double column = (azimuth + std::numbers::pi) / kTurn * static_cast<double>(columns_);
-  column -= std::floor(column / columns_) * columns_;
-  return column < columns_ ? column : 0;
+  return within_turn((azimuth + std::numbers::pi) / kTurn * static_cast<double>(columns_));
+}
+
+double Lattice::within_turn(double column) const {
+  const double within = column - std::floor(column / columns_) * columns_;
+  return within >= 0 && within < columns_ ? within : 0;
 }
 
 DenseGrid::DenseGrid(const Lattice& lattice, double row_factor_, double column_factor)

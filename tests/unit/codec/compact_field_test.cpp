@@ -64,7 +64,7 @@ TEST(CompactField, RowsWithoutReturnsTakeTheNearestRow) {
   }
 }
 
-TEST(CompactField, CellsHaveExactlyTheirCodedRanges) {
+TEST(CompactField, CellsHaveTheirCodedRangesLessTheOffsetsOfRings) {
   for (const double error : {0.05, 0.005}) {  // without and with residuals
     const DecodedScan scan = coded(test::small_scan(), error);
     const Lattice& lattice = scan.field->lattice();
@@ -74,7 +74,8 @@ TEST(CompactField, CellsHaveExactlyTheirCodedRanges) {
         const double range = range_at(*scan.field, row, column);
         ASSERT_EQ(std::isnan(range), !scan.field->occupied(row, column));
         if (std::isnan(range)) continue;
-        ASSERT_NEAR(range, norm(scan.points[number]), 1e-7 * range);
+        ASSERT_NEAR(range + scan.field->ring_offset_m(row), norm(scan.points[number]),
+                    1e-7 * range);
         ++number;
       }
     }

@@ -105,7 +105,7 @@ TEST(DenseDecoded, FindsThemForBeamsThatStartElsewhere) {
   EXPECT_GT(raised.completeness, .95);
 }
 
-TEST(DenseDecoded, TellsMoreOfAPaperFileAndLeavesItsCells) {
+TEST(DenseDecoded, TellsMoreOfAPaperFileAndTheSameOnItsCells) {
   EncodeSettings settings;
   settings.profile = Profile::paper;
   settings.paper = paper_preset("indoor").value();
@@ -116,14 +116,17 @@ TEST(DenseDecoded, TellsMoreOfAPaperFileAndLeavesItsCells) {
             between_the_rings(room, *room.scan.field, 0).completeness);
   const std::vector<double> columns{0, 17, 100, 255};
   std::vector<double> told(4), paper(4);
+  std::size_t cells = 0;
   for (std::uint32_t row = 0; row < field->lattice().rows(); row += 3) {
     field->evaluate_row(row, columns, true, told);
     room.scan.field->evaluate_row(row, columns, true, paper);
     for (std::size_t i = 0; i < 4; ++i) {
       if (!field->occupied(row, static_cast<std::uint32_t>(columns[i]))) continue;
-      EXPECT_TRUE(told[i] == paper[i] || (std::isnan(told[i]) && std::isnan(paper[i])));
+      EXPECT_NEAR(told[i], paper[i], 1e-6) << row << ' ' << columns[i];
+      ++cells;
     }
   }
+  EXPECT_GT(cells, 10u);
 }
 
 /// Whether the scene is one surface all around a border between cells.

@@ -50,7 +50,7 @@ class RingField final : public Field {
                     std::span<double> ranges) const override {
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const Vec3& p = points_[nearest_cell(row, columns[i])];
-      ranges[i] = row_line(row).range_of(std::hypot(p.x, p.y), p.z) + offset_m_;
+      ranges[i] = row_line(row).range_of(std::hypot(p.x, p.y), p.z);
     }
   }
   void place_row(double row, std::span<const double> columns, std::span<const double> ranges,
