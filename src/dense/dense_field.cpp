@@ -166,7 +166,7 @@ void DenseField::evaluate_row(double row, std::span<const double> columns, bool 
       0, {0, line.height_m}, {std::cos(line.elevation), std::sin(line.elevation)}};
   for (std::size_t i = 0; i < columns.size(); ++i) {
     ranges[i] = along_row(line, plane, columns[i], masked);
-    if (std::isnan(ranges[i]) && !masked) {
+    if (std::isnan(ranges[i]) && !masked && std::isfinite(columns[i])) {
       field_->evaluate_row(row, columns.subspan(i, 1), masked, ranges.subspan(i, 1));
     }
   }
