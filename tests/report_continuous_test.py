@@ -5,10 +5,10 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from report_support import KITTI, OTHER, ROOM, FakeContext, by
+from report_support import KITTI, OTHER, ROOM, STREET, FakeContext, by
 from frame.cells import Missing
 from sections import (continuous, continuous_borders, continuous_confidence, continuous_equal,
-                      continuous_goals, goals, profiles)
+                      continuous_goals, continuous_uses, goals, profiles)
 
 LIMITS = {"min_range_m": 5., "max_range_m": 20.}
 FIGURES = {"points": 9, "mean": .1, "rms": .2, "p50": .05, "p95": .3, "max": 1.,
@@ -42,6 +42,11 @@ def lines_of(key):
     if key["part"] == "truth":
         return [{"returns": 9, **LIMITS}, *(told(*each, factor=float(factor))
                                             for each in METHODS[:-1] for factor in (2, 4, 8))]
+    if key["part"] == "sparse":
+        return [{"rings_coded": 64 // key["every"], "rows": rows, "bits_per_point": 1., **FIGURES,
+                 "from_held_out": {"p50": .05, "p95": .3}} for rows in (64, 128)]
+    if key["part"] == "as sensor":
+        return [{"setting": "5 mm", "bits_per_point": 2., **FIGURES, "all_completeness": .6}]
     if key["input"] == OTHER.name:
         return [{"skipped": "the rings of the scan cannot be told"}]
     return [{"preset": "outdoor", "rings": 64, "rings_coded": 32, "returns_coded": 90,
@@ -80,7 +85,7 @@ class ContinuousTest(unittest.TestCase):
     def test_quick_runs_measure_less(self):
         context = FakeContext(lines_of, quick=True)
         continuous.measure_lines(context)
-        self.assertEqual(len(context.asked), 2 + 2 + 1 + 2)  # K = 2 asked again
+        self.assertEqual(len(context.asked), 2 + 2 + 1 + 2 + 1)  # K = 2 asked again
         self.assertIn("2,8", context.asked[0])
         self.assertNotIn("--baseline", context.asked[0])
 
@@ -217,6 +222,30 @@ class ConfidenceTest(unittest.TestCase):
         tables[0].rows.reverse()
         tables[1].rows[1]["completeness"] = 1.
         self.assertEqual(len(list(continuous_confidence.check(tables))), 2)
+
+
+class UsesTest(unittest.TestCase):
+    def tables(self, **options):
+        context = FakeContext(lines_of, **options)
+        return continuous_uses.tables(context, continuous.own_scenes(context))
+
+    def test_sparse_scans_come_from_sensors_of_many_rings(self):
+        rows = self.tables(scans=[KITTI, OTHER])[0].rows
+        self.assertEqual([(row["input"], row["rings_coded"], row["rows"]) for row in rows],
+                         [(KITTI.name, 16, 64), (KITTI.name, 16, 128), (KITTI.name, 32, 64),
+                          (KITTI.name, 32, 128), (OTHER.name, 32, 64), (OTHER.name, 32, 128)])
+        self.assertEqual(rows[0]["from_p95"], .3)
+
+    def test_only_scans_of_the_wide_sensor_are_seen_as_others(self):
+        self.assertIsInstance(self.tables()[1].rows[0]["p50"], Missing)
+        rows = self.tables(scenes=[STREET])[1].rows
+        self.assertEqual([row["other"] for row in rows], list(continuous_uses.OTHERS))
+
+    def test_check_finds_a_median_above_its_p95(self):
+        tables = self.tables()
+        self.assertEqual(list(continuous_uses.check(tables)), [])
+        tables[0].rows[0]["p50"] = .4
+        self.assertEqual(len(list(continuous_uses.check(tables))), 1)
 
 
 class BordersTest(unittest.TestCase):

@@ -11,6 +11,7 @@ from frame.scans import Scan, Scene  # noqa: E402
 
 KITTI = Scan("kitti_raw/a.pcd", Path("a.pcd"), "HDL-64E")
 OTHER = Scan("velodyne/b.pcd", Path("b.pcd"), "HDL-32E")
+STREET = Scene("street", "hdl64e-kitti", "outdoor")
 ROOM = Scene("room", "os1-64-gen1", "indoor")
 
 

@@ -66,13 +66,6 @@ void print_methods(const std::vector<Method>& methods, const RingSplit& split,
                edge_aware, limited, whole);
 }
 
-/// The beams of the sensor's rings, as far as they are known.
-const BeamModel* beams_of(const OwnScan& own) {
-  const bool known =
-      own.lattice && own.lattice->beams.beams.size() == own.rings.sensor.rings.size();
-  return known ? &own.lattice->beams : nullptr;
-}
-
 }  // namespace
 
 Status held_out(const Arguments& arguments) {

@@ -51,6 +51,8 @@ const std::vector<Verb> kVerbs{
      {"every", "preset", "sensor"},
      "SCAN [--every K] [--preset P] [--sensor S]",
      nearest},
+    {"sparse", 1, {"every", "preset", "sensor"}, "SCAN [--every K] [--sensor S]", sparse},
+    {"as-sensor", 4, {"seed"}, "SCENE SENSOR PRESET OTHER_SENSOR [--seed N]", as_sensor},
     {"timing",
      1,
      {"runs", "preset", "sensor"},

@@ -21,4 +21,10 @@ Result<OwnScan> own_scan(const Scan& scan) {
   return own;
 }
 
+const BeamModel* beams_of(const OwnScan& own) {
+  const bool known =
+      own.lattice && own.lattice->beams.beams.size() == own.rings.sensor.rings.size();
+  return known ? &own.lattice->beams : nullptr;
+}
+
 }  // namespace curlidar::bench

@@ -19,4 +19,7 @@ struct OwnScan {
 /// The scan in its sensor's own frame; as it is where its motion cannot be told.
 Result<OwnScan> own_scan(const Scan& scan);
 
+/// The beams of the scan's rings, as far as they are known; else nullptr.
+const BeamModel* beams_of(const OwnScan& own);
+
 }  // namespace curlidar::bench

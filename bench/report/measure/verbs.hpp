@@ -20,6 +20,10 @@ Status borders_truth(const Arguments& arguments);
 // ring is coded and of a simulated one.
 Status range_images(const Arguments& arguments);
 Status range_images_truth(const Arguments& arguments);
+// sparse.cpp: every K-th ring by the preset for sparse scans, against the rings left out.
+Status sparse(const Arguments& arguments);
+// as_sensor.cpp: a simulated scan as another sensor sees it, against what that one's beams meet.
+Status as_sensor(const Arguments& arguments);
 // nearest.cpp: distances between the whole scan and every K-th ring of it made denser.
 Status nearest(const Arguments& arguments);
 // timing.cpp: CPU time of the codecs, and of the stages of the paper's.

@@ -5,13 +5,13 @@ from dataclasses import replace
 from frame.cells import Missing
 from frame.tables import Column, Figure, Table
 from sections import (continuous_borders, continuous_confidence, continuous_equal,
-                      continuous_goals, profiles)
+                      continuous_goals, continuous_uses, profiles)
 from sections.one_to_one import explain, plain_numbers, short, table_id, taken_as
 
 TITLE = "Continuous reconstruction"
 TABLES = ("continuous-goals", "continuous-goals-all", "continuous-equal-truth",
           "continuous-confidence", "continuous-trade", "continuous-borders",
-          "continuous-published")
+          "continuous-sparse", "continuous-sensor", "continuous-published")
 FACTORS, QUICK_FACTORS = (2, 4, 8), (2, 8)
 HELD_OUT = (2, 4)  # every K-th ring coded
 NO_FILE = Missing("raw samples, no file")
@@ -62,6 +62,11 @@ def measure_lines(context):
         for every in HELD_OUT:
             held_out_of(context, scan, every)
     borders_of(context)
+    continuous_uses.measure(context, own_scenes(context))
+
+
+def own_scenes(context):
+    return [own(scene) for scene in context.scenes]
 
 
 def drawn_items(context):
@@ -73,7 +78,7 @@ def drawn_items(context):
 def borders_of(context):
     """Scenes with their own sensors, and the real scans whose rings are known."""
     scans = [scan for scan in context.scans if not left_out(held_out_of(context, scan, 2))]
-    return continuous_borders.lines_of(context, [own(each) for each in context.scenes], scans)
+    return continuous_borders.lines_of(context, own_scenes(context), scans)
 
 
 def truth_lines(context):
@@ -173,8 +178,8 @@ def held_out_table(context, scan, found):
               "the other half of this scan (sectors of 10 degrees by turns). No method can know "
               "it from the coded rings."]
     return Table(table_id("continuous-held-out", scan), f"Rings held out of {scan.name}",
-                 "returns of the rings between every K-th, along their own beams as far as these are "
-                 "known, where a method predicts a range within the paper's limits; motion of the "
+                 "returns of the rings between every K-th, along their own beams as far as these "
+                 "are known, where a method predicts a range within the paper's limits; motion of the "
                  "scan is undone first.",
                  columns, rows, notes,
                  shown(held_out_command("report_measure", scan, scan.name, "K")))
@@ -260,7 +265,8 @@ def tables(context):
     return [*continuous_goals.tables(*all_lines, borders_of(context), taught),
             *continuous_equal.tables(*measured, taught),
             *continuous_confidence.tables(*measured, taught),
-            continuous_borders.table(borders_of(context)), *found, published(context)]
+            continuous_borders.table(borders_of(context)),
+            *continuous_uses.tables(context, own_scenes(context)), *found, published(context)]
 
 
 def drawn(line):
@@ -269,7 +275,8 @@ def drawn(line):
 
 
 NAMES = ("curlidar", "curlidar, profile of other drives", "curlidar, its field alone", "baseline",
-         "paper, S 1x1", "paper, S 2x1", "paper, S 2x2", "linear in 1/r", "edge-aware in 1/r", "edge-aware, rings calibrated")
+         "paper, S 1x1", "paper, S 2x1", "paper, S 2x2", "linear in 1/r", "edge-aware in 1/r",
+         "edge-aware, rings calibrated")
 
 
 def figures(context):
@@ -339,6 +346,7 @@ def check(_context, found):
     ascending bins."""
     yield from continuous_confidence.check(found)
     yield from continuous_borders.check(found)
+    yield from continuous_uses.check(found)
     for table in found:
         if not table.id.startswith(("continuous-truth", "continuous-held-out")):
             continue

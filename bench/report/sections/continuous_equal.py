@@ -94,10 +94,10 @@ def held_out(measured, taught):
         "along their own beams.", identity, rows,
         [EQUAL,
          "Rings calibrated: the median error of each held-out ring taken off, fitted on the other "
-         "half of the same scan. The most trusted half: the returns with the highest confidence. At "
-         "5 mm: from a file of that mean error, for what is lost whatever coding loses.",
-         "Profile of other drives: tables of the held-out rings, fitted to the scans at hand of all "
-         "drives but that of the scan."], more)
+         "half of the same scan. The most trusted half: the returns with the highest confidence. "
+         "At 5 mm: from a file of that mean error, for what is lost whatever coding loses.",
+         "Profile of other drives: tables of the held-out rings, fitted to the scans at hand of "
+         "all drives but that of the scan."], more)
 
 
 def table(name, title, counts, identity, rows, notes, more=()):

@@ -82,8 +82,8 @@ def four_times(measured):
 
 
 def confidence(by_kind):
-    return [goals.at_most(f"confidence, {row['kind']}: told beside observed", row["bin"], row["off"],
-                          continuous_confidence.WITHIN)
+    return [goals.at_most(f"confidence, {row['kind']}: told beside observed", row["bin"],
+                          row["off"], continuous_confidence.WITHIN)
             for row in continuous_confidence.bins(by_kind)
             if row["count"] >= continuous_confidence.FEWEST]
 
@@ -119,8 +119,8 @@ def tables(measured_truth, measured_held_out, measured_borders, taught):
                 "continuous-goals-all", "All goals, one by one",
                 "as the tables below that the figures come from.", rows,
                 ["simulated, held-out rings: at equal completeness with edge-aware interpolation of "
-                 "the raw samples, both methods ranked by what they trust; the figure wanted is that "
-                 "of the interpolation, or its part.",
+                 "the raw samples, both methods ranked by what they trust; the figure wanted is "
+                 "that of the interpolation, or its part.",
                  f"Held-out rings: confidence, which ranks, {taught}. KITTI held-out 4x: every "
                  "fourth ring coded, all that is told counts; the most trusted half is one half of "
                  "the returns. A confidence: bins that hold enough lines.",

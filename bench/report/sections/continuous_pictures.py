@@ -98,8 +98,8 @@ def figures(context, items):
         beside, coded = told_of(item, factor)
         found += [
             Figure(names["images"], f"{item.name}: range images between the rings",
-                   f"A part of the turn, from {beside} to {coded}, then edge-aware interpolation of "
-                   "the raw samples and the confidence of curlidar (yellow: high). Black: nothing "
+                   f"A part of the turn, from {beside} to {coded}, then edge-aware interpolation "
+                   "of the raw samples and the confidence of curlidar (yellow: high). Black: nothing "
                    "is told.", "png", f"the coded file of {item.name}"),
             Figure(names["cuts"], f"{item.name}: cut-outs",
                    "Where there are most thin things (poles), most edges below the horizon "
@@ -183,7 +183,8 @@ def draw_plane(axis, plane, title, low, high):
 def shown(images):
     """(title, plane) of what is drawn side by side."""
     return [(images.beside, images.planes["truth"]),
-            *((f"curlidar, {factor}x", images.of_rows("compact", factor)) for factor in (1, images.factor // 2, images.factor)),
+            *((f"curlidar, {factor}x", images.of_rows("compact", factor))
+              for factor in (1, images.factor // 2, images.factor)),
             (f"edge-aware, {images.factor}x", images.planes["edge-aware"])]
 
 

@@ -3,7 +3,8 @@
 from frame.cells import Missing
 from frame.tables import Column, Table, rows_or
 
-COLUMNS = [Column("goal", "goal"), Column("input", "of"), Column("measured", "measured", digits=4, check="any"),
+COLUMNS = [Column("goal", "goal"), Column("input", "of"),
+           Column("measured", "measured", digits=4, check="any"),
            Column("wanted", "wanted", digits=4), Column("met", "met")]
 
 
