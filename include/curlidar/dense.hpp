@@ -25,18 +25,22 @@ struct DensityProfile;
 /// Names of the profiles that the library carries, sorted. "generic" is in use without being asked
 /// for: it tells confidence only.
 std::vector<std::string> builtin_density_names();
-/// One of them, or a file ending in .toml (docs/density.md), at most 4 MiB. Errors: not_found, io,
-/// corrupt, invalid_argument with the line.
+/// One of them, or a file ending in .toml (docs/density.md). Errors: not_found, io, limit_exceeded
+/// (a file of more than 4 MiB), corrupt, invalid_argument with the line.
 Result<std::shared_ptr<const DensityProfile>> load_density_profile(const std::string& name_or_path);
-/// Whether the rings of the field are those that the profile was given. Errors: invalid_argument,
-/// saying which are not.
+/// Whether the rings of the field are those that the profile was given; one without rows, as those
+/// that tell confidence alone, fits every field. Errors: invalid_argument, saying which are not.
 Status check_density_profile(const DensityProfile& profile, const Field& field);
 
 struct DenseSettings {
   DenseStrategy strategy = DenseStrategy::best;
-  /// Lines of sight that are those of a row of the profile's sensor see what that row would have
-  /// measured. One that does not fit the field (see above) is left aside.
+  /// Tells how often there is a return where the rows of its sensor look that were not given, and
+  /// confidence. One that does not fit the field (see above) is left aside.
   std::shared_ptr<const DensityProfile> profile{};
+  /// Lines of sight that are those of such a row, within a quarter of the step to the next one, see
+  /// what the row would have measured, its own error included: for a virtual sensor that is the
+  /// profile's. Anything denser than its rows would be ribbed by it.
+  bool rows_of_profile = false;
 };
 
 /// The field of a decoded scan made to be asked anywhere. Every member tells of one and the same

@@ -33,8 +33,9 @@ struct RangeEstimate {
   /// From the line's origin, metres. Also where no surface is believed, if there is anything to
   /// guess from; else NaN.
   double range_m = std::numeric_limits<double>::quiet_NaN();
-  /// Probability that a surface is there and |error of range_m| <= 5 cm; 0 .. 1.
-  float confidence = 0;
+  /// Probability that a surface is there and |error of range_m| <= 5 cm; 0 .. 1. NaN: not told, as
+  /// by all fields but those of dense_field() (curlidar/dense.hpp).
+  float confidence = std::numeric_limits<float>::quiet_NaN();
   Seen seen = Seen::unknown;
 
   bool valid() const { return seen == Seen::surface; }

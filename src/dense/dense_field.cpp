@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/parallel.hpp"
-#include "dense/confidence.hpp"
 
 namespace curlidar {
 namespace {
@@ -60,13 +59,15 @@ DenseField::DenseField(std::shared_ptr<const Field> field, const DenseSettings& 
       points_(*field_),
       motion_(*field_),
       errors_(errors_of(points_, *field_)),
-      profile_(settings.profile) {
-  if (!profile_ || !check_rows(*profile_, points_)) return;
+      rows_of_profile_(settings.rows_of_profile) {
+  if (!settings.profile || !check_rows(*settings.profile, points_)) return;
+  profile_ = settings.profile;
+  if (profile_->rows == 0) return;
   std::vector<double> offset_m;
   for (std::size_t ring = 0; ring < points_.rings(); ++ring) {
     offset_m.push_back(field_->ring_offset_m(points_.row(ring)));
   }
-  rows_.emplace(points_, *profile_, std::move(offset_m));
+  rows_.emplace(points_, *profile_, errors_, std::move(offset_m));
 }
 
 DenseField::Found DenseField::find_in_plane(const PlaneLine& line) const {
@@ -104,38 +105,45 @@ DenseField::Found DenseField::find(const Sightline& line) const {
 
 RangeEstimate DenseField::estimate(const Sightline& line) const {
   RangeEstimate estimate;
+  estimate.confidence = 0;
   if (!is_sight(line) || points_.empty()) return estimate;
-  Found found = find({line.origin, unit(line.direction)});
-  estimate.confidence = confidence_of(found);
-  judge(found);
-  if (found.guess.r > 0) estimate.range_m = found.guess.r;
-  estimate.seen = found.guess.seen;
+  const Found found = find({line.origin, unit(line.direction)});
+  const Verdict verdict = judge(found);
+  estimate.confidence = confidence_of(found, verdict);
+  if (verdict.guess.r > 0) estimate.range_m = verdict.guess.r;
+  estimate.seen = verdict.guess.seen;
   return estimate;
 }
 
-float DenseField::confidence_of(const Found& found) const {
+DenseField::Verdict DenseField::judge(const Found& found) const {
+  const Verdict rules{found.guess, 1, std::nullopt};
+  if (!rows_ || !(found.guess.r > 0)) return rules;
+  const PlaneLine& line = found.look.line;
+  const double rho = line.from.rho + found.guess.r * line.along.rho;
+  const double z = line.from.z + found.guess.r * line.along.z;
+  const auto near = rows_->row_near(std::atan2(z, rho), std::hypot(rho, z));
+  if (!near) return rules;
+  const bool own = rows_of_profile_ && near->own;
+  RowGuess judged{found.look, found.guess};
+  rows_->judge(near->row, own ? RowSays::all : RowSays::returns, judged);
+  return {judged.guess, judged.returns, own ? std::optional(near->row) : std::nullopt};
+}
+
+float DenseField::confidence_of(const Found& found, const Verdict& verdict) const {
   if (!(found.guess.r > 0)) return 0;
+  if (verdict.row && !profile_->row_confidence.empty()) {
+    const RowFeatures features = rows_->features(*verdict.row, {found.look, found.guess});
+    return static_cast<float>(probability_of(profile_->row_confidence(features)));
+  }
   const bool own = profile_ && !profile_->confidence.empty();
   const ObliviousTrees& trees = own ? profile_->confidence : generic_confidence();
-  if (trees.empty()) return plain_confidence(found.look, found.guess, errors_.noise_m);
   const PlainFeatures features = plain_features(points_, found.look, found.guess, errors_);
   // Trees were taught by steps up to about this; the larger one is, the less often a surface that
   // it rounds lies within 5 cm.
   constexpr double kTaughtStep_m = 0.5;
   const double coarse = std::max(errors_.step_m / kTaughtStep_m, 1.0);
-  return static_cast<float>(probability_of(trees(features)) / coarse);
-}
-
-void DenseField::judge(Found& found) const {
-  if (!rows_ || !(found.guess.r > 0)) return;
-  const PlaneLine& line = found.look.line;
-  const double rho = line.from.rho + found.guess.r * line.along.rho;
-  const double z = line.from.z + found.guess.r * line.along.z;
-  const auto row = rows_->row_of(std::atan2(z, rho), std::hypot(rho, z));
-  if (!row) return;
-  RowGuess judged{found.look, found.guess};
-  rows_->judge(*row, judged);
-  found.guess = judged.guess;
+  // That a surface is there the trees have a say in too: what the profile knows is a limit to it.
+  return static_cast<float>(std::min(probability_of(trees(features)) / coarse, verdict.returns));
 }
 
 void DenseField::range_along(std::span<const Sightline> lines, std::span<RangeEstimate> estimates,
@@ -151,10 +159,9 @@ double DenseField::along_row(const RowLine& row, PlaneLine line, double column, 
   if (!std::isfinite(column)) return kNan;
   line.azimuth =
       std::remainder(lattice().azimuth(lattice().within_turn(column)), 2 * std::numbers::pi);
-  Found found = find_in_plane(line);
-  judge(found);
-  if (!(found.guess.r > 0) || (masked && found.guess.seen != Seen::surface)) return kNan;
-  return row.range_of(found.guess.r * line.along.rho, row.height_m + found.guess.r * line.along.z);
+  const Guess guess = judge(find_in_plane(line)).guess;
+  if (!(guess.r > 0) || (masked && guess.seen != Seen::surface)) return kNan;
+  return row.range_of(guess.r * line.along.rho, row.height_m + guess.r * line.along.z);
 }
 
 void DenseField::evaluate_row(double row, std::span<const double> columns, bool masked,

@@ -61,9 +61,14 @@ class DenseField final : public Field {
   Found find(const Sightline& line) const;
   Found find_in_plane(const PlaneLine& line) const;
   RangeEstimate estimate(const Sightline& line) const;
-  float confidence_of(const Found& found) const;
-  /// What the profile says of it, if the line is that of a row.
-  void judge(Found& found) const;
+  /// What is made of it where a profile has a say.
+  struct Verdict {
+    Guess guess;
+    double returns = 1;              ///< probability of a return, as far as the profile tells
+    std::optional<std::size_t> row;  ///< the line is that of this row, which measured `guess`
+  };
+  Verdict judge(const Found& found) const;
+  float confidence_of(const Found& found, const Verdict& verdict) const;
   /// Where the line of a row, turned to a column, meets what is believed or, not `masked`, guessed;
   /// as a range of the row; else NaN.
   double along_row(const RowLine& row, PlaneLine line, double column, bool masked) const;
@@ -72,8 +77,9 @@ class DenseField final : public Field {
   RingPoints points_;
   MotionTable motion_;
   ScanErrors errors_;
-  std::shared_ptr<const DensityProfile> profile_;
-  std::optional<RowRules> rows_;  ///< where the profile fits
+  std::shared_ptr<const DensityProfile> profile_;  ///< null if it does not fit
+  std::optional<RowRules> rows_;                   ///< where it has rows
+  bool rows_of_profile_ = false;
 };
 
 }  // namespace curlidar

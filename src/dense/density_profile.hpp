@@ -61,7 +61,9 @@ struct DensityProfile {
 
   ObliviousTrees returns;     ///< log odds that there is a return
   ObliviousTrees residual;    ///< of a range on a smooth surface, as a share of it
-  ObliviousTrees confidence;  ///< log odds of a surface within 5 cm
+  ObliviousTrees confidence;  ///< log odds of a surface within 5 cm of what the rules say
+  /// The same of what a row would have measured, bias and residual included.
+  ObliviousTrees row_confidence;
 
   bool is_given(std::size_t row) const {
     return row >= given_first && (row - given_first) % given_every == 0;
@@ -76,6 +78,7 @@ struct DensityProfile {
 };
 
 inline constexpr std::size_t kMaxDensityRows = 1024;
+inline constexpr std::int16_t kMaxBias_mm = 1000;
 
 /// Checks what everybody who uses it relies on. Errors: invalid_argument.
 Status validate(const DensityProfile& profile);
@@ -89,7 +92,7 @@ Result<DensityProfile> parse_density_profile(std::string_view text, const std::s
 
 /// Errors: not_found.
 Result<DensityProfile> builtin_density_profile(std::string_view name);
-/// The trees of confidence that suit every sensor. Read once.
+/// The trees of confidence that suit every sensor, never empty. Read once.
 const ObliviousTrees& generic_confidence();
 
 }  // namespace curlidar

@@ -41,7 +41,8 @@ struct TreesKey {
 };
 constexpr TreesKey kTrees[] = {{"returns", &DensityProfile::returns},
                                {"residual", &DensityProfile::residual},
-                               {"confidence", &DensityProfile::confidence}};
+                               {"confidence", &DensityProfile::confidence},
+                               {"row_confidence", &DensityProfile::row_confidence}};
 
 /// Reads one table of the file; the first failure is kept, and what is read after it is empty.
 class Reader {

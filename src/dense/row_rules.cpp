@@ -52,7 +52,7 @@ Status check_rows(const DensityProfile& profile, const RingPoints& points) {
     return Error{ErrorCode::invalid_argument,
                  fmt::format("density profile \"{}\": {}", profile.name, what)};
   };
-  if (profile.elevation_mdeg.empty()) return invalid("there are no tables of rows in it");
+  if (profile.rows == 0) return {};
   const std::size_t given =
       (profile.rows - profile.given_first + profile.given_every - 1) / profile.given_every;
   if (given != points.rings()) {
@@ -68,12 +68,15 @@ Status check_rows(const DensityProfile& profile, const RingPoints& points) {
   return {};
 }
 
-RowRules::RowRules(const RingPoints& points, const DensityProfile& profile,
+RowRules::RowRules(const RingPoints& points, const DensityProfile& profile, ScanErrors errors,
                    std::vector<double> offset_m)
     : points_(points),
       profile_(profile),
-      errors_(errors_of(points)),
+      errors_(std::move(errors)),
       offset_m_(std::move(offset_m)) {}
+
+RowRules::RowRules(const RingPoints& points, const DensityProfile& profile)
+    : RowRules(points, profile, errors_of(points)) {}
 
 RowFeatures RowRules::features(std::size_t row, const RowGuess& found) const {
   return row_features(plain_features(points_, found.look, found.guess, errors_), profile_, row,
@@ -100,11 +103,20 @@ RowGuess RowRules::look_along_row(std::size_t row, double azimuth) const {
 
 RowGuess RowRules::guess_along_row(std::size_t row, double azimuth) const {
   RowGuess found = look_along_row(row, azimuth);
-  judge(row, found);
+  judge(row, RowSays::all, found);
   return found;
 }
 
-void RowRules::judge(std::size_t row, RowGuess& found) const {
+double RowRules::range_of_row(std::size_t row, const RowGuess& found,
+                              const RowFeatures& asked) const {
+  constexpr double kMostChange = 0.1;  // as a share; what changes it by more makes no sense
+  const double r = found.guess.r;
+  double measured = r + raw_offset_m(found) + profile_.bias_m(row, r);
+  if (!profile_.residual.empty()) measured *= 1 + profile_.residual(asked);
+  return std::abs(measured - r) <= kMostChange * r ? measured : r;
+}
+
+void RowRules::judge(std::size_t row, RowSays says, RowGuess& found) const {
   Guess& guess = found.guess;
   if (!(guess.r > 0)) {
     found.returns = 0;
@@ -115,10 +127,7 @@ void RowRules::judge(std::size_t row, RowGuess& found) const {
   if (trees) asked = features(row, found);
   found.returns = profile_.returns.empty() ? returns_by_tables(row, found)
                                            : probability_of(profile_.returns(asked));
-  if (on_one_surface(guess)) {
-    guess.r += raw_offset_m(found) + profile_.bias_m(row, guess.r);
-    if (!profile_.residual.empty()) guess.r *= 1 + profile_.residual(asked);
-  }
+  if (says == RowSays::all && on_one_surface(guess)) guess.r = range_of_row(row, found, asked);
   guess.seen = found.returns >= 0.5 ? Seen::surface : Seen::nothing;
 }
 
@@ -157,19 +166,23 @@ double RowRules::returns_by_tables(std::size_t row, const RowGuess& found) const
                                    : 0.5 + 0.5 * (occupied - kLeastOccupied) / (1 - kLeastOccupied);
 }
 
-std::optional<std::size_t> RowRules::row_of(double elevation, double range_m) const {
-  const auto away = [&](std::size_t row) {
-    return std::abs(profile_.elevation(row, range_m) - elevation);
+std::optional<NearRow> RowRules::row_near(double elevation, double range_m) const {
+  constexpr double kOwn = 0.25, kNear = 0.5;  // of the step to the next row
+  const auto above_row = [&](std::size_t row) {
+    return elevation - profile_.elevation(row, range_m);
   };
   std::size_t nearest = 0;
   for (std::size_t row = 1; row < profile_.rows; ++row) {
-    if (away(row) < away(nearest)) nearest = row;
+    if (std::abs(above_row(row)) < std::abs(above_row(nearest))) nearest = row;
   }
-  const std::size_t other = nearest == 0 ? 1 : nearest - 1;
-  if (other >= profile_.rows) return nearest;
-  const double step =
-      std::abs(profile_.elevation(other, range_m) - profile_.elevation(nearest, range_m));
-  return away(nearest) <= step / 4 ? std::optional(nearest) : std::nullopt;
+  if (profile_.is_given(nearest)) return std::nullopt;
+  const double away = above_row(nearest);
+  // The row on that side; beyond the outermost ones the step is as on the other side.
+  const bool up = nearest + 1 >= profile_.rows || (away > 0 && nearest > 0);
+  const std::size_t other = up ? nearest - 1 : nearest + 1;
+  const double step = std::abs(above_row(other) - away);
+  if (std::abs(away) > kNear * step) return std::nullopt;
+  return NearRow{nearest, std::abs(away) <= kOwn * step};
 }
 
 }  // namespace curlidar

@@ -84,8 +84,8 @@ Status validate(const ObliviousTrees& trees) {
     return invalid(fmt::format("{} trees need {} leaves, not {}", trees.trees(),
                                trees.trees() << trees.depth, trees.leaves.size()));
   }
-  if (!std::isfinite(trees.base) || !std::isfinite(trees.unit)) {
-    return invalid("base and unit must be finite");
+  if (!(std::abs(trees.base) <= kMaxTreeNumber && std::abs(trees.unit) <= kMaxTreeNumber)) {
+    return invalid(fmt::format("base and unit must be numbers up to {:g}", kMaxTreeNumber));
   }
   return {};
 }

@@ -13,6 +13,7 @@
 namespace curlidar {
 
 inline constexpr std::size_t kMaxTreeFeatures = 256, kMaxTrees = 1024, kMaxTreeDepth = 8;
+inline constexpr double kMaxTreeNumber = 1e6;  ///< of base and unit
 
 struct ObliviousTrees {
   /// A question: is the level of the feature above this one?

@@ -62,7 +62,6 @@ RangeEstimate estimate_along(const Field& field, const Sightline& line) {
   if (std::isnan(range)) return estimate;
   estimate.range_m = norm(point_of(field, aim, range) - line.origin);
   estimate.seen = std::isnan(masked) ? Seen::unknown : Seen::surface;
-  estimate.confidence = std::isnan(masked) ? 0.0F : 0.5F;
   return estimate;
 }
 

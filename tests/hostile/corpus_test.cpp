@@ -11,6 +11,7 @@
 
 #include "hostile/targets/container.hpp"
 #include "hostile/targets/decode.hpp"
+#include "hostile/targets/density.hpp"
 #include "hostile/targets/field.hpp"
 #include "hostile/targets/mask.hpp"
 #include "hostile/targets/points.hpp"
@@ -33,6 +34,7 @@ constexpr Target kTargets[] = {{"container", test::container_target},
                                {"residual", test::residual_target},
                                {"scan", test::scan_target},
                                {"decode", test::decode_target},
+                               {"density", test::density_target},
                                {"rays", test::rays_target},
                                {"order", test::order_target},
                                {"records", test::records_target},

@@ -30,7 +30,7 @@ RowScores judge_rows(const RowScan& scan, const DensityProfile& profile, bool wi
     found.guess = decide(points, found.look);
     if (!(found.guess.r > 0)) continue;
     const PlainFeatures features = plain_features(points, found.look, found.guess, errors);
-    if (with_profile) rules.judge(cell.row, found);
+    if (with_profile) rules.judge(cell.row, RowSays::all, found);
     if (found.guess.seen != Seen::surface) continue;
     answers.push_back({generic_confidence()(features), std::abs(found.guess.r - cell.range_m)});
   }

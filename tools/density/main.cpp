@@ -157,8 +157,8 @@ void show(const char* what, const Calibration& calibration) {
   fmt::print("  worst {:.3f}\n", calibration.worst(0.01 * all));
 }
 
-/// From a few centimetres of error to what a bit a point leaves.
-constexpr double kSteps_m[] = {0.03, 0.1, 0.3};
+/// Metres: from what three bits a return leave of an HDL-64E to what one leaves of sparse sensors.
+constexpr double kSteps_m[] = {0.03, 0.1, 0.15, 0.3, 0.6};
 
 /// Answers of all scenes and sensors of one seed. What cannot be coded is left out, with a word.
 void add_simulated(const Options& options, std::uint64_t seed, Samples& samples) {

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <fstream>
 #include <string>
 
 namespace curlidar {
@@ -42,6 +44,7 @@ DensityProfile some_profile() {
   }
   profile.returns = some_trees(kRowFeatures);
   profile.confidence = some_trees(kPlainFeatures);
+  profile.row_confidence = some_trees(kRowFeatures);
   return profile;
 }
 
@@ -105,6 +108,12 @@ TEST(DensityProfile, MistakesAreNamedWithTheirLine) {
                       "splits = [[0, 0]]\nleaves = [[1, 2]]"),
               HasSubstr("features are meant"));
   EXPECT_THAT(why_not("[trees.wisdom]\ndepth = 1"), HasSubstr("unknown key \"wisdom\""));
+  EXPECT_THAT(why_not("rows = 1\n[tables]\nelevation_mdeg = [[1]]\nbias_mm = [[1001]]"),
+              HasSubstr("bias_mm, row 0: 1001 is not in -1000 .. 1000"));
+  EXPECT_THAT(why_not("rows = 2"), HasSubstr("rows need elevations"));
+  EXPECT_THAT(why_not("[trees.confidence]\ndepth = 1\nbase = 1e7\nunit = 1\ncuts = [[0]]\n"
+                      "splits = [[0, 0]]\nleaves = [[1, 2]]"),
+              HasSubstr("base and unit"));
   EXPECT_THAT(why_not("trees = 7"), HasSubstr("trees must be a table"));
   EXPECT_THAT(why_not("[="), HasSubstr("not TOML"));
 }
@@ -118,7 +127,10 @@ TEST(DensityProfile, DamagedTextIsReadAsSomethingValidOrRefused) {
     for (const std::string& tried : {damaged, text.substr(0, i)}) {
       const Result<DensityProfile> read = parse_density_profile(tried, "text");
       if (read) {
-        EXPECT_TRUE(validate(*read)) << i;
+        EXPECT_EQ(
+            density_profile_text(*parse_density_profile(density_profile_text(*read), "again")),
+            density_profile_text(*read))
+            << i;
       } else {
         ++refused;
         EXPECT_THAT(read.error().message, testing::StartsWith("text, line ")) << i;
@@ -126,6 +138,38 @@ TEST(DensityProfile, DamagedTextIsReadAsSomethingValidOrRefused) {
     }
   }
   EXPECT_GT(refused, text.size() / 20);
+}
+
+TEST(DensityProfile, TreesOfRowsNeedRows) {
+  for (ObliviousTrees DensityProfile::*trees :
+       {&DensityProfile::returns, &DensityProfile::residual, &DensityProfile::row_confidence}) {
+    DensityProfile profile;
+    profile.*trees = some_trees(kRowFeatures);
+    const Status status = validate(profile);
+    ASSERT_FALSE(status);
+    EXPECT_THAT(status.error().message, HasSubstr("trees of rows need rows"));
+  }
+}
+
+TEST(DensityProfile, TheGenericOneTellsConfidence) {
+  EXPECT_EQ(generic_confidence().features(), kPlainFeatures);
+  EXPECT_GT(generic_confidence().trees(), 0u);
+}
+
+TEST(DensityProfile, FilesAreReadUpToALimit) {
+  const std::string path = testing::TempDir() + "density_profile_test.toml";
+  std::ofstream(path) << density_profile_text(some_profile());
+  const auto read = load_density_profile(path);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(**read, some_profile());
+  std::ofstream(path) << std::string((4u << 20) + 1, ' ');
+  const auto large = load_density_profile(path);
+  ASSERT_FALSE(large);
+  EXPECT_EQ(large.error().code, ErrorCode::limit_exceeded);
+  std::remove(path.c_str());
+  const auto gone = load_density_profile(path);
+  ASSERT_FALSE(gone);
+  EXPECT_EQ(gone.error().code, ErrorCode::not_found);
 }
 
 TEST(DensityProfile, BuiltInOnesCanBeRead) {
