@@ -172,12 +172,6 @@ class BeliefTest(ReconstructCommandTest):
         self.assertEqual((own["rows"], own["min_confidence"]), (2, 0))
         self.run_fail(USAGE, "decode", "scan.curl", "--preset", "dense", says="dense")
 
-    def test_density_profiles(self):
-        # "generic" knows of no sensor's rows; it is in use anyway.
-        self.run_fail(INPUT, "decode", "scan.curl", "--density-profile", "generic", "-o", "g.pcd",
-                      says=["generic", "rows"])
-        self.run_fail(USAGE, "decode", "scan.curl", "--density-profile", "nobody", says="nobody")
-
     def test_normals(self):
         self.decode("--rows", 2, "--normals", "-o", "n.csv")
         known = 0
