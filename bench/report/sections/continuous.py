@@ -179,8 +179,8 @@ def held_out_table(context, scan, found):
               "it from the coded rings."]
     return Table(table_id("continuous-held-out", scan), f"Rings held out of {scan.name}",
                  "returns of the rings between every K-th, along their own beams as far as these "
-                 "are known, where a method predicts a range within the paper's limits; motion of the "
-                 "scan is undone first.",
+                 "are known, where a method predicts a range within the paper's limits; motion of "
+                 "the scan is undone first.",
                  columns, rows, notes,
                  shown(held_out_command("report_measure", scan, scan.name, "K")))
 

@@ -118,8 +118,8 @@ def tables(measured_truth, measured_held_out, measured_borders, taught):
             goals.table(
                 "continuous-goals-all", "All goals, one by one",
                 "as the tables below that the figures come from.", rows,
-                ["simulated, held-out rings: at equal completeness with edge-aware interpolation of "
-                 "the raw samples, both methods ranked by what they trust; the figure wanted is "
+                ["simulated, held-out rings: at equal completeness with edge-aware interpolation "
+                 "of the raw samples, both methods ranked by what they trust; the figure wanted is "
                  "that of the interpolation, or its part.",
                  f"Held-out rings: confidence, which ranks, {taught}. KITTI held-out 4x: every "
                  "fourth ring coded, all that is told counts; the most trusted half is one half of "

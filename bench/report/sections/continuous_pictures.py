@@ -99,8 +99,8 @@ def figures(context, items):
         found += [
             Figure(names["images"], f"{item.name}: range images between the rings",
                    f"A part of the turn, from {beside} to {coded}, then edge-aware interpolation "
-                   "of the raw samples and the confidence of curlidar (yellow: high). Black: nothing "
-                   "is told.", "png", f"the coded file of {item.name}"),
+                   "of the raw samples and the confidence of curlidar (yellow: high). Black: "
+                   "nothing is told.", "png", f"the coded file of {item.name}"),
             Figure(names["cuts"], f"{item.name}: cut-outs",
                    "Where there are most thin things (poles), most edges below the horizon "
                    "(wheels, kerbs) and most edges at all (foliage): each coloured from its "

@@ -19,7 +19,8 @@ def at_least(goal, of, measured, wanted):
 
 def no_figure(goal, of, why, wanted):
     """A goal that could not be judged is not met."""
-    return {"goal": goal, "input": of, "measured": Missing(why), "wanted": wanted, "met": "no figure"}
+    return {"goal": goal, "input": of, "measured": Missing(why), "wanted": wanted,
+            "met": "no figure"}
 
 
 def said(value, limit, way="over"):

@@ -44,5 +44,5 @@ def confidence_taught(context):
     if without and all(without):
         return "taught without the scan's own group"
     if any(without):
-        return "taught without the scan's own group as far as that was made, else by these scans too"
+        return "taught without the scan's own group where that was made, else by these scans too"
     return "taught by these scans too"

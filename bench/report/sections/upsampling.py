@@ -34,14 +34,14 @@ COLUMNS = [
     Column("completeness", "completeness", "share", check="share")]
 IDENTITY = [Column("method", "method"), Column("what", "from"),
             Column("bits", "bits a return", digits=2)]
-LINES = ["Image rows as measured: what the protocol gives, rows 0, 4, .. 60 of the image, to a method "
-         "that predicts the others; `report_measure` alone does that. A user's file: rings 0, 4, .. 60 of "
-         "the sensor coded as the scan of a sensor of 16 rings, decoded with --sensor as the whole "
-         "sensor, its points projected as those of the scan are. Its rings lie in other rows of the "
-         "image than those that the protocol gives, so some of the predicted rows hold what was "
-         "coded: compare it with the lines of its kind.",
-         "Given rows are judged too, by MAE, Chamfer, IoU and F1: as they were decoded, or (given rows "
-         "exact) replaced by those of the scan, as if the raw samples were still there."]
+LINES = ["Image rows as measured: what the protocol gives, rows 0, 4, .. 60 of the image, to a "
+         "method that predicts the others; `report_measure` alone does that. A user's file: rings "
+         "0, 4, .. 60 of the sensor coded as the scan of a sensor of 16 rings, decoded with "
+         "--sensor as the whole sensor, its points projected as those of the scan are. Its rings "
+         "lie in other rows of the image than those that the protocol gives, so some of the "
+         "predicted rows hold what was coded: compare it with the lines of its kind.",
+         "Given rows are judged too, by MAE, Chamfer, IoU and F1: as they were decoded, or (given "
+         "rows exact) replaced by those of the scan, as if the raw samples were still there."]
 
 
 def judged(context):
@@ -138,8 +138,8 @@ def protocol(context, means):
         "pixels; motion of the scans is undone first; means over drives of the means over their "
         "scans.",
         [*IDENTITY, Column("drives", "drives"), *COLUMNS], rows,
-        [*LINES, "SuperRso was not run: its network and its weights are not available here; its row is "
-         "kept for when they are.",
+        [*LINES, "SuperRso was not run: its network and its weights are not available here; its "
+         "row is kept for when they are.",
          "published on another split: not comparable scan by scan.",
          "Profiles, tables and trees were fitted (program `density`) to all scans at hand of other "
          "drives than the one that is judged."])

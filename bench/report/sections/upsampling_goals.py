@@ -6,7 +6,6 @@ WITH_PROFILE = (("MAE", "mae_m", 1.1, goals.at_most), ("Chamfer", "chamfer_m2", 
                 ("IoU", "iou", .38, goals.at_least), ("F1", "f1", .55, goals.at_least))
 LEAST_IOU = .33  # without a profile
 WORSE = .1       # that a file at 1 bit may be
-RAW, RAW_PROFILE = "rules", "rules, tables, trees"
 # (name, of the raw samples or a fine file, of the file at 1 bit)
 KINDS = (("image rows", "rules, tables, trees", "decoded image, 1 bit"),
          ("a user's file", "file, 5 mm, profile", "file, 1 bit, profile"))
@@ -28,7 +27,8 @@ def rows_of(figures):
         if exact not in figures:
             continue
         for title, key, wanted, judge in WITH_PROFILE:
-            rows.append(judge(f"profile of other drives: {title}", kind, figures[exact][key], wanted))
+            rows.append(judge(f"profile of other drives: {title}", kind, figures[exact][key],
+                              wanted))
         for rows_as in ("", ", given rows exact"):
             basis = figures[exact + rows_as] if exact + rows_as in figures else figures[exact]
             for title, key, _, judge in WITH_PROFILE:
@@ -42,5 +42,5 @@ def table(figures):
     return goals.table(
         "upsampling-goals", "16 rings to 64: goals", "means over the drives of this run.",
         rows_of(figures),
-        ["Image rows: the protocol's own, from raw samples. A user's file: at 5 mm, where a file at "
-         "1 bit a return is what is compared with it."])
+        ["Image rows: the protocol's own, from raw samples. A user's file: at 5 mm, where a file "
+         "at 1 bit a return is what is compared with it."])
