@@ -11,8 +11,8 @@ namespace {
 
 /// Samples farther apart than so many columns have others missing between them.
 constexpr double kNeighbours = 1.9;
-/// Samples beside each other on one surface: ratio of their distances from the axis.
-constexpr double kSameAlong = 1.1;
+/// Samples beside each other no farther apart, as a share of the nearer, are of one surface.
+constexpr double kSameShare = 0.1, kSame_m = 0.3;
 /// Radians. Samples farther apart, of few columns, have no straight line between them.
 constexpr double kWidest = 1;
 
@@ -34,8 +34,8 @@ void mix(RingLook& look, double step) {
   look.mixed = true;
 }
 
-bool alike(double a, double b, double ratio) {
-  return std::max(a, b) <= ratio * std::min(a, b);
+bool alike(double a, double b) {
+  return std::abs(a - b) <= kSameShare * std::min(a, b) + kSame_m;
 }
 
 }  // namespace
@@ -74,7 +74,7 @@ RingLook look_at_ring(const RingPoints& points, const PlaneLine& line, std::ptrd
   const bool both =
       std::max(left.away, right.away) <= RingLook::kFill || left.away + right.away <= kNeighbours;
   const bool wide = (left.away + right.away) * points.column_step() > kWidest;
-  if (left.away > 0 && both && !wide && alike(left.point->rho, right.point->rho, kSameAlong)) {
+  if (left.away > 0 && both && !wide && alike(left.point->rho, right.point->rho)) {
     mix(look, points.column_step());
   } else {
     look.place = place_of(to_right ? *right.point : *left.point);

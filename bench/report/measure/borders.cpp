@@ -3,9 +3,9 @@
 // where they jump although nothing does. Against exact truth of simulated scans, against the
 // original returns of real ones.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -41,11 +41,11 @@ struct Coded {
   double bits_per_point = 0, step_m = 0;
 };
 
-/// What is known of a pair: the true jump, or whether the original returns are apart.
+/// What is known of a pair: of the true jump, and whether the original returns are apart.
 struct Known {
   bool one_surface = false, no_jump = false;
 };
-using Knowledge = std::function<Known(const std::array<Vec3, kStops>& way)>;
+using Knowledge = std::function<Known(const Cells& cells, const CellPair& pair)>;
 
 template <class Block>
 std::vector<std::uint32_t> blocks_of(const Lattice& lattice, const std::vector<Block>& blocks) {
@@ -82,11 +82,38 @@ Result<Coded> coded(std::string name, std::string setting, const Cloud& cloud,
                encoded.report.compact ? encoded.report.compact->step_m : 0};
 }
 
-std::vector<Vec3> directions_of(const std::array<Vec3, kStops>& way) {
-  std::vector<Vec3> directions;
-  for (const Vec3& p : way) directions.push_back(p * (1 / norm(p)));
-  return directions;
+WayRanges true_ranges_along(const Scene& scene, const Way& way) {
+  WayRanges ranges_m;
+  std::transform(way.begin(), way.end(), ranges_m.begin(), [&](const Sightline& line) {
+    Hit hit;
+    return scene.cast(line.origin, line.direction, hit) ? hit.range_m
+                                                        : std::numeric_limits<double>::quiet_NaN();
+  });
+  return ranges_m;
 }
+
+/// The returns that were coded.
+class Originals {
+ public:
+  explicit Originals(const Cloud& cloud) : cloud_(cloud), tree_(cloud, cloud) {}
+
+  /// Whether all between which the way of a pair passes are of one surface.
+  bool near(const Cells& cells, const CellPair& pair) const {
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (const std::size_t cell : cells.around(pair)) {
+      Neighbour nearest;
+      tree_.nearest(cells.coded(cell), std::span(&nearest, 1));
+      const double range_m = norm(cloud_.positions[nearest.slot]);
+      least = std::min(least, range_m);
+      most = std::max(most, range_m);
+    }
+    return most - least <= kApart * least + kApart_m;
+  }
+
+ private:
+  const Cloud& cloud_;
+  ReturnTree tree_;
+};
 
 struct Jumps {
   std::size_t pairs = 0, nothing = 0, no_jump = 0, large = 0;
@@ -111,18 +138,16 @@ Json to_json(Jumps jumps, double step_m) {
 /// Prints the jumps of a field on borders and within blocks, in steps of `step_m`.
 void print_jumps(const Coded& coded, double step_m, const Knowledge& knowledge) {
   Jumps borders, insides;
-  for (const CellPair& pair : cell_pairs(*coded.field, coded.block, kPairs)) {
-    const std::array<Vec3, kStops> way = way_between(*coded.field, pair);
-    std::array<double, kStops> ranges_m;
-    std::transform(way.begin(), way.end(), ranges_m.begin(), [](const Vec3& p) { return norm(p); });
-    const double jump_m = jump_of(ranges_m);
+  const Cells cells(coded.field);
+  for (const CellPair& pair : cells.pairs(coded.block, kPairs)) {
+    const double jump_m = jump_of(ranges_along(*coded.field, cells.way(pair)));
     Jumps& jumps = pair.border ? borders : insides;
     ++jumps.pairs;
     if (std::isnan(jump_m)) {
       ++jumps.nothing;
       continue;
     }
-    const Known known = knowledge(way);
+    const Known known = knowledge(cells, pair);
     if (known.one_surface) jumps.one_surface_m.push_back(jump_m);
     jumps.no_jump += known.no_jump ? 1 : 0;
     jumps.large += known.no_jump && jump_m > kLarge * step_m ? 1 : 0;
@@ -165,13 +190,12 @@ Status borders_truth(const Arguments& arguments) {
   CURLIDAR_TRY_ASSIGN(seed, arguments.number("seed", 1, 0, 1u << 30));
   CURLIDAR_TRY_ASSIGN(
       simulated, simulate_scan(arguments.words[0], arguments.words[1], arguments.words[2], seed));
+  const Originals originals(simulated.cloud);
   const auto knowledge = [&](double step_m) -> Knowledge {
-    return [&simulated, step_m](const std::array<Vec3, kStops>& way) {
-      const std::vector<double> truth = true_ranges(*simulated.scene, directions_of(way));
-      std::array<double, kStops> ranges_m;
-      std::copy(truth.begin(), truth.end(), ranges_m.begin());
-      const double jump_m = jump_of(ranges_m);
-      return Known{jump_m <= kOneSurface * step_m, jump_m <= kSmall * step_m};
+    return [&, step_m](const Cells& cells, const CellPair& pair) {
+      const double jump_m = jump_of(true_ranges_along(*simulated.scene, cells.way(pair)));
+      const bool no_jump = jump_m <= kSmall * step_m && originals.near(cells, pair);
+      return Known{jump_m <= kOneSurface * step_m, no_jump};
     };
   };
   return print_all(simulated.cloud, {}, simulated.settings, knowledge);
@@ -179,16 +203,10 @@ Status borders_truth(const Arguments& arguments) {
 
 Status borders(const Arguments& arguments) {
   CURLIDAR_TRY_ASSIGN(scan, read_scan(arguments));
-  const ReturnTree tree(scan.cloud, scan.cloud);
-  const auto original_m = [&](const Vec3& told) {
-    Neighbour nearest;
-    tree.nearest(told, std::span(&nearest, 1));
-    return norm(scan.cloud.positions[nearest.slot]);
-  };
+  const Originals originals(scan.cloud);
   const auto knowledge = [&](double) -> Knowledge {
-    return [&](const std::array<Vec3, kStops>& way) {
-      const double a = original_m(way.front()), b = original_m(way.back());
-      const bool near = std::abs(a - b) <= kApart * std::min(a, b) + kApart_m;
+    return [&](const Cells& cells, const CellPair& pair) {
+      const bool near = originals.near(cells, pair);
       return Known{near, near};
     };
   };

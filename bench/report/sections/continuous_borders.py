@@ -50,14 +50,16 @@ def table(measured):
     return Table(
         "continuous-borders", "Jumps between neighbouring cells, where patches meet and within "
         "them", "pairs of neighbouring cells that both hold a return, up to 10,000 of each kind, "
-        "evenly taken; between their middles the field is asked at 17 places.", COLUMNS,
+        "evenly taken; from the return of one to that of the other the field is asked along 17 lines "
+        "of sight, from where the beams start.", COLUMNS,
         rows_or(rows, COLUMNS, "no scan was measured"),
         ["A jump is what the largest step on the way is more than the others, in inverse range: a "
          "plane has none. curlidar at 1 bit a return, D being the step of its field; the paper's "
          "jumps are told in the same D. Blocks: the leaves of the one, the patches of the other.",
          "Of one surface: simulated, the exact scene jumps by no more than D / 4 on the way; "
-         "real, the original returns of the two cells are no more than 10 % + .3 m apart. Without "
-         "a true jump: the scene jumps by no more than D; real ones as before.",
+         "real, the original returns of the two cells and those between which the way passes are no "
+         "more than 10 % + .3 m apart. Without a true jump: these, and simulated scenes jump by no "
+         "more than D.",
          f"Wanted: a mean jump of at most {MEAN_WANTED:g} D, and none over 2 D that is not true."])
 
 

@@ -229,17 +229,20 @@ TEST(DenseField, IsOneSurfaceAcrossTheSeam) {
 TEST(DenseField, SaysOfItsCellsWhatTheirBeamsSaw) {
   const auto plain = std::make_shared<RingField>(rings(true), 360, street, .07);
   const auto field = dense_field(plain);
-  std::vector<double> columns(360), told(360), coded(360);
-  for (std::size_t i = 0; i < columns.size(); ++i) columns[i] = static_cast<double>(i);
+  std::size_t cells = 0;
   for (std::uint32_t row = 0; row < 16; ++row) {
-    field->evaluate_row(row, columns, true, told);
-    plain->evaluate_row(row, columns, true, coded);
     for (std::uint32_t column = 0; column < 360; ++column) {
-      if (plain->occupied(row, column)) {
-        EXPECT_NEAR(told[column], coded[column], .05) << row << ' ' << column;
-      }
+      const Vec3& p = plain->point(row, column);
+      if (std::isnan(p.x)) continue;
+      const double at = plain->lattice().column_of(azimuth_of(p));
+      double told = 0;
+      field->evaluate_row(row, std::span(&at, 1), true, std::span(&told, 1));
+      const double coded = plain->row_line(row).range_of(std::hypot(p.x, p.y), p.z);
+      EXPECT_NEAR(told, coded, 1e-3 * coded) << row << ' ' << column;
+      ++cells;
     }
   }
+  EXPECT_GT(cells, 3000u);
 }
 
 TEST(DenseField, LeavesOutWhatItsRingsMeasureTooFar) {
@@ -282,6 +285,20 @@ TEST(DenseField, TakesAnyColumnAndAnyOrigin) {
       EXPECT_EQ(told.seen, Seen::unknown);
       EXPECT_TRUE(std::isnan(told.range_m));
     }
+  }
+}
+
+TEST(DenseField, JoinsSamplesOfARingUpToTenPercentAndThirtyCentimetres) {
+  for (const auto& [other, joined] : {std::pair{5.7, true}, {5.9, false}}) {
+    const test::World fence = [far = other](const Vec3&, const Vec3& direction) {
+      const auto column =
+          static_cast<int>(std::lround((azimuth_of(direction) / kDegree + 180) * 2));
+      return column % 2 == 0 ? 5 : far;
+    };
+    const auto field = dense_field(std::make_shared<RingField>(rings(false), 720, fence));
+    const Vec3 half_way = field->lattice().direction(6, 300.5);
+    const double told = estimate(*field, {{}, half_way}).range_m;
+    EXPECT_EQ(told > 5.1 && told < other - .1, joined) << told;
   }
 }
 
