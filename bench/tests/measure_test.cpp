@@ -139,6 +139,19 @@ TEST(Judge, CutsBothMethodsToTheLinesThatTheyTrustMost) {
   EXPECT_DOUBLE_EQ(half.within_5cm, 0.5);
 }
 
+TEST(Judge, RanksWhatTellsNoConfidenceInAnOrderOfItsOwn) {
+  std::vector<double> truth;
+  std::vector<RangeEstimate> plain, equal;
+  for (int i = 0; i < 50; ++i) {
+    truth.push_back(5);
+    plain.push_back({5.0 + i, std::numeric_limits<float>::quiet_NaN(), Seen::surface});
+    equal.push_back(told(5.0 + i));
+  }
+  const Judge judge(truth, {});
+  EXPECT_EQ(judge.ranked(plain), judge.ranked(equal));
+  EXPECT_NE(judge.ranked(plain).front(), 0);  // not that of the first line
+}
+
 TEST(Judge, CountsConfidencesInTenBins) {
   const Judge judge({5, 5, kNan, 5}, {});
   const std::vector<RangeEstimate> estimates{

@@ -75,8 +75,11 @@ std::vector<double> Judge::ranked(std::span<const RangeEstimate> told) const {
   for (std::size_t i = 0; i < told.size(); ++i) {
     if (is_told(told[i]) && limits_.hold(true_m_[i])) lines.push_back(i);
   }
+  const auto trust = [&](std::size_t i) {  // plain fields tell none
+    return std::isnan(told[i].confidence) ? 0 : told[i].confidence;
+  };
   std::sort(lines.begin(), lines.end(), [&](std::size_t a, std::size_t b) {
-    if (told[a].confidence != told[b].confidence) return told[a].confidence > told[b].confidence;
+    if (trust(a) != trust(b)) return trust(a) > trust(b);
     return scattered(a) < scattered(b);
   });
   std::vector<double> errors_m(lines.size());

@@ -68,8 +68,8 @@ std::vector<Method> dense_methods(const MethodInput& input, const Method& field,
     Method method = field;
     method.name = called;
     if (!field.field) return method;
-    method.field =
-        dense_field(field.field, {.profile = with_confidence(profile, input.confidence)});
+    method.field = dense_field(field.field, {.profile = with_confidence(profile, input.confidence),
+                                             .rows_of_profile = profile != nullptr});
     method.sampler = std::make_shared<FieldSampler>(method.field);
     return method;
   };

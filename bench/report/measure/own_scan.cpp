@@ -13,7 +13,11 @@ Result<OwnScan> own_scan(const Scan& scan) {
   OwnScan own;
   CURLIDAR_TRY_ASSIGN(rings, scan.settings.sensor ? assign_rings(scan.cloud, *scan.settings.sensor)
                                                   : detect_sensor(scan.cloud));
-  CURLIDAR_TRY_ASSIGN(lattice, find_sensor_lattice(scan.cloud, rings, scan.settings));
+  std::optional<LatticeFit> lattice;
+  if (rings.source != RingSource::uniform) {  // else there are no rings to look for
+    CURLIDAR_TRY_ASSIGN(found, find_sensor_lattice(scan.cloud, rings, scan.settings));
+    lattice = std::move(found);
+  }
   own.motion_undone = lattice && !lattice->motion.none();
   own.cloud = own.motion_undone ? in_own_frame(scan.cloud, *lattice) : scan.cloud;
   own.rings = std::move(rings);
