@@ -16,6 +16,7 @@
 #include "curlidar/simulate.hpp"
 #include "hostile/targets/container.hpp"
 #include "hostile/targets/decode.hpp"
+#include "hostile/targets/density.hpp"
 #include "hostile/targets/field.hpp"
 #include "hostile/targets/mask.hpp"
 #include "hostile/targets/points.hpp"
@@ -318,7 +319,27 @@ void write_points(const Seeds& seeds) {
   }
 }
 
+/// Texts of profiles with tables, with trees, and of nothing.
+void write_density(const Seeds& seeds) {
+  const auto write = [&](const std::string& name, const DensityProfile& profile) {
+    const std::string text = density_profile_text(profile);
+    const ByteSpan bytes = std::as_bytes(std::span(text));
+    seeds.write("density", name, {bytes.begin(), bytes.end()});
+  };
+  write("empty", {});
+  DensityProfile tower = test::tower_profile();
+  tower.bias_mm.row(2).fill(200);
+  tower.return_permille.row(3).fill(300);
+  write("tower", tower);
+  tower.returns = test::one_question(kRowFeatures, kPlainFeatures, 4, -100, 100);
+  tower.residual = test::one_question(kRowFeatures, 5, 8, -10, 10, 1e-3);
+  tower.confidence = test::one_question(kPlainFeatures, 5, 8, 100, -100);
+  tower.row_confidence = test::one_question(kRowFeatures, 5, 8, 100, -100);
+  write("trees", tower);
+}
+
 void write_all(const Seeds& seeds) {
+  write_density(seeds);
   write_records_chunks(seeds);
   write_files(seeds);
   write_record_files(seeds);

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "report/measure/held_out_lines.hpp"
+#include "protocol/held_out_lines.hpp"
 #include "report/measure/sampler.hpp"
 
 namespace curlidar::bench {

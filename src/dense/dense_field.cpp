@@ -129,21 +129,29 @@ DenseField::Verdict DenseField::judge(const Found& found) const {
   return {judged.guess, judged.returns, own ? std::optional(near->row) : std::nullopt};
 }
 
+PlainFeatures DenseField::features(const Found& found) const {
+  return plain_features(points_, found.look, found.guess, errors_);
+}
+
+RowFeatures DenseField::features(const Found& found, std::size_t row) const {
+  return rows_->features(row, {found.look, found.guess});
+}
+
 float DenseField::confidence_of(const Found& found, const Verdict& verdict) const {
   if (!(found.guess.r > 0)) return 0;
   if (verdict.row && !profile_->row_confidence.empty()) {
-    const RowFeatures features = rows_->features(*verdict.row, {found.look, found.guess});
-    return static_cast<float>(probability_of(profile_->row_confidence(features)));
+    const RowFeatures asked = features(found, *verdict.row);
+    return static_cast<float>(probability_of(profile_->row_confidence(asked)));
   }
   const bool own = profile_ && !profile_->confidence.empty();
   const ObliviousTrees& trees = own ? profile_->confidence : generic_confidence();
-  const PlainFeatures features = plain_features(points_, found.look, found.guess, errors_);
   // Trees were taught by steps up to about this; the larger one is, the less often a surface that
   // it rounds lies within 5 cm.
-  constexpr double kTaughtStep_m = 0.5;
+  constexpr double kTaughtStep_m = 0.8;
   const double coarse = std::max(errors_.step_m / kTaughtStep_m, 1.0);
   // That a surface is there the trees have a say in too: what the profile knows is a limit to it.
-  return static_cast<float>(std::min(probability_of(trees(features)) / coarse, verdict.returns));
+  return static_cast<float>(
+      std::min(probability_of(trees(features(found))) / coarse, verdict.returns));
 }
 
 void DenseField::range_along(std::span<const Sightline> lines, std::span<RangeEstimate> estimates,

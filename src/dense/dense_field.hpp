@@ -50,24 +50,30 @@ class DenseField final : public Field {
   bool moves() const override { return field_->moves(); }
   RigidMotion motion_at(double azimuth) const override { return field_->motion_at(azimuth); }
 
- private:
   /// What was found along a line of sight.
   struct Found {
     Look look;
     Guess guess;
   };
-
-  /// Along a line of the cloud's frame.
-  Found find(const Sightline& line) const;
-  Found find_in_plane(const PlaneLine& line) const;
-  RangeEstimate estimate(const Sightline& line) const;
   /// What is made of it where a profile has a say.
   struct Verdict {
     Guess guess;
     double returns = 1;              ///< probability of a return, as far as the profile tells
     std::optional<std::size_t> row;  ///< the line is that of this row, which measured `guess`
   };
+
+  // What an estimate comes from, for those who teach confidence.
+
+  /// Along a line of the cloud's frame, of unit length.
+  Found find(const Sightline& line) const;
   Verdict judge(const Found& found) const;
+  PlainFeatures features(const Found& found) const;
+  /// Those of a row of the profile, which has rows.
+  RowFeatures features(const Found& found, std::size_t row) const;
+
+ private:
+  Found find_in_plane(const PlaneLine& line) const;
+  RangeEstimate estimate(const Sightline& line) const;
   float confidence_of(const Found& found, const Verdict& verdict) const;
   /// Where the line of a row, turned to a column, meets what is believed or, not `masked`, guessed;
   /// as a range of the row; else NaN.

@@ -42,7 +42,7 @@ class RangeTable {
 
 /// Numbers that trees of confidence are asked with, which mean the same for every sensor: ratios of
 /// ranges, metres, columns, degrees. src/dense/features.cpp lists them.
-inline constexpr std::size_t kPlainFeatures = 60;
+inline constexpr std::size_t kPlainFeatures = 64;
 /// Those, and what a profile knows of the row, that other trees are asked with.
 inline constexpr std::size_t kRowFeatures = kPlainFeatures + 9;
 

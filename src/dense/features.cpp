@@ -60,6 +60,29 @@ double nearest_ratio(const Neighbours& row, double r) {
   return std::log(nearest);
 }
 
+/// How far samples side by side lie from the straight line through their neighbours, the mean over
+/// seven columns: the noise that is left, and steps of the coding. Less than 0: not known.
+double roughness(const Neighbours& row) {
+  constexpr int kReach = 3;
+  double sum = 0;
+  int count = 0;
+  for (int column = -kReach; column <= kReach; ++column) {
+    const double left = row.at(column - 1), here = row.at(column), right = row.at(column + 1);
+    if (!(left > 0 && here > 0 && right > 0)) continue;
+    sum += std::min(std::abs(left + right - 2 * here) / 2, 1.0);
+    ++count;
+  }
+  return count > 0 ? sum / count : -1;
+}
+
+/// Logarithm of the size of the patch that a ring's nearest sample was coded with; -1: none.
+double patch_size(const ScanErrors& errors, const RingLook& ring) {
+  if (!ring.known || errors.patch_cells.empty()) return -1;
+  const RingSample& nearest = ring.right.away < ring.left.away ? ring.right : ring.left;
+  const std::uint32_t cells = errors.patch_cells[nearest.point->cell];
+  return cells > 0 ? std::log2(cells) : -1;
+}
+
 template <std::size_t kSize>
 void add_row(Filler<kSize>& to, const RingLook& ring, const Neighbours& row, double r) {
   to.add(std::min(ring.near, kMostAway));
@@ -76,6 +99,21 @@ void add_row(Filler<kSize>& to, const RingLook& ring, const Neighbours& row, dou
   to.add(bend(row, ring.known ? ring.r : 0, 1));
   to.add(bend(row, ring.known ? ring.r : 0, 3));
   for (const int column : {-4, -2, -1, 1, 2, 4}) to.add(ratio(row.at(column), r));
+}
+
+/// For every cell how many have its patch.
+std::vector<std::uint32_t> patch_cells(const std::vector<std::int32_t>& patches) {
+  std::vector<std::uint32_t> sizes, cells(patches.size(), 0);
+  for (const std::int32_t patch : patches) {
+    if (patch < 0) continue;
+    const auto at = static_cast<std::size_t>(patch);
+    if (at >= sizes.size()) sizes.resize(at + 1, 0);
+    ++sizes[at];
+  }
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (patches[i] >= 0) cells[i] = sizes[static_cast<std::size_t>(patches[i])];
+  }
+  return cells;
 }
 
 int kind(DenseMode mode) {
@@ -106,7 +144,8 @@ ScanErrors errors_of(const RingPoints& points, const Field& field) {
   for (std::uint32_t row = 0; row < rows; ++row) {
     squares += field.ring_offset_m(row) * field.ring_offset_m(row);
   }
-  return {ring_noise_m(points), field.step_m(), std::sqrt(squares / rows)};
+  return {ring_noise_m(points), field.step_m(), std::sqrt(squares / rows),
+          patch_cells(field.cell_patches())};
 }
 
 PlainFeatures plain_features(const RingPoints& points, const Look& look, const Guess& guess,
@@ -151,9 +190,13 @@ PlainFeatures plain_features(const RingPoints& points, const Look& look, const G
   to.add(nearest_ratio(row_below, r));
   add_row(to, above, row_above, r);
   add_row(to, below, row_below, r);
-  static_assert(kPlainFeatures == 22 + 4 + 4 + 2 * 14 + 2);
+  static_assert(kPlainFeatures == 22 + 4 + 4 + 2 * 14 + 2 + 4);
   to.add(std::min(above.near, below.near));
   to.add(row_above.count(1) + row_below.count(1));
+  to.add(roughness(row_above));
+  to.add(roughness(row_below));
+  to.add(patch_size(errors, above));
+  to.add(patch_size(errors, below));
   return features;
 }
 

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "dense/density_profile.hpp"
 #include "dense/look.hpp"
@@ -18,6 +20,9 @@ struct ScanErrors {
   double noise_m = 0;   ///< ring_noise_m() of its rings
   double step_m = 0;    ///< of the coded ranges; 0: not coded
   double offset_m = 0;  ///< root mean square of what rings measured too far or too near
+  /// By cell: how many are coded with one patch, this one among them. Large patches round less, for
+  /// what is left of them fits their surface. Empty: not coded.
+  std::vector<std::uint32_t> patch_cells{};
 };
 ScanErrors errors_of(const RingPoints& points);
 /// The points are the field's.

@@ -12,7 +12,7 @@
 #include "base/try.hpp"
 #include "curlidar/io.hpp"
 #include "curlidar/simulate.hpp"
-#include "density/row_scan.hpp"
+#include "protocol/held_out_lines.hpp"
 #include "protocol/ring_split.hpp"
 
 namespace curlidar::density {
@@ -108,33 +108,27 @@ Result<AskedScan> ask_simulated(const Coder& coder, const SimulatedScan& what, d
     const Vec3 direction = direction_of(elevation, azimuth);
     Hit hit;
     const bool met = scene->cast({}, direction, hit) && hit.range_m <= sensor.max_range_m;
-    scan.places.push_back({direction, met ? hit.range_m : 0});
+    scan.places.push_back({{{}, direction}, met ? hit.range_m : 0});
   }
   return scan;
 }
 
-Result<AskedScan> ask_held_out(const Coder& coder, const std::string& path, std::size_t every,
+Result<AskedScan> ask_held_out(const Coder& coder, const OwnScan& own, std::size_t every,
                                double step_m, std::size_t places) {
   constexpr std::size_t kLeastRings = 5;
-  CURLIDAR_TRY_ASSIGN(own, read_own_frame(path));
-  CURLIDAR_TRY_ASSIGN(detection, detect_sensor(own));
   const bench::RingSplit split =
-      bench::split_rings(own, detection, static_cast<std::uint32_t>(every));
+      bench::split_rings(own.cloud, own.rings, static_cast<std::uint32_t>(every));
   if (split.sensor.rings.size() < kLeastRings || split.held_out.empty()) {
-    return Error{ErrorCode::unsupported, fmt::format("{}: too few rings", path)};
+    return Error{ErrorCode::unsupported, fmt::format("{}: too few rings", own.path)};
   }
-  std::string name = fmt::format("{}-every-{}", path, every);
+  std::string name = fmt::format("{}-every-{}", own.path, every);
   std::replace(name.begin(), name.end(), '/', '_');
   CURLIDAR_TRY_ASSIGN(scan, coder.code(name, split.coded, split.sensor, step_m));
-  const std::size_t all = split.held_out.size() + split.gaps.size();
-  const std::size_t step = std::max<std::size_t>(all / places, 1);
-  for (std::size_t i = 0; i < all; i += step) {
-    if (i < split.held_out.size()) {
-      const double range = norm(split.held_out[i]);
-      scan.places.push_back({split.held_out[i] * (1 / range), range});
-    } else {
-      scan.places.push_back({split.gaps[i - split.held_out.size()], 0});
-    }
+  const bench::AskedLines asked = bench::lines_of(split, own.beams());
+  const std::size_t step = std::max<std::size_t>(asked.lines.size() / places, 1);
+  for (std::size_t i = 0; i < asked.lines.size(); i += step) {
+    const double range_m = asked.true_m[i];
+    scan.places.push_back({asked.lines[i], range_m > 0 ? range_m : 0});
   }
   return scan;
 }

@@ -10,13 +10,14 @@
 
 #include "curlidar/codec.hpp"
 #include "curlidar/field.hpp"
+#include "density/row_scan.hpp"
 
 namespace curlidar::density {
 
 struct AskedScan {
   struct Place {
-    Vec3 direction;      ///< from the origin, of unit length
-    double range_m = 0;  ///< of the surface there; 0: there is none
+    Sightline line;      ///< of unit length
+    double range_m = 0;  ///< of the surface along it; 0: there is none
   };
 
   std::string group;  ///< scene or drive
@@ -47,10 +48,9 @@ struct SimulatedScan {
 Result<AskedScan> ask_simulated(const Coder& coder, const SimulatedScan& what, double step_m,
                                 std::size_t places);
 
-/// Rings 0, every, 2 every .. of a scan, asked for about `places` returns and
-/// gaps of the others. `every` is
-/// refused if fewer than five rings were left.
-Result<AskedScan> ask_held_out(const Coder& coder, const std::string& path, std::size_t every,
+/// Rings 0, every, 2 every .. of a scan, asked for about `places` returns and gaps of the others,
+/// along the beams of these. `every` is refused if fewer than five rings were left.
+Result<AskedScan> ask_held_out(const Coder& coder, const OwnScan& own, std::size_t every,
                                double step_m, std::size_t places);
 
 }  // namespace curlidar::density

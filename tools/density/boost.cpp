@@ -220,6 +220,16 @@ class Booster {
 
 }  // namespace
 
+void Samples::add(const Samples& other) {
+  const auto append = [](std::vector<float>& to, const std::vector<float>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  values.resize(std::max(values.size(), other.values.size()));
+  for (std::size_t i = 0; i < other.values.size(); ++i) append(values[i], other.values[i]);
+  append(wanted, other.wanted);
+  append(weight, other.weight);
+}
+
 ObliviousTrees boost(const Samples& samples, const BoostSettings& settings, std::size_t threads) {
   return Booster(samples, settings, threads).run();
 }

@@ -15,6 +15,8 @@ struct Samples {
   std::vector<float> wanted, weight;       ///< of each sample
 
   std::size_t size() const { return wanted.size(); }
+  /// Those of another, which has the same features.
+  void add(const Samples& other);
 };
 
 enum class Loss {

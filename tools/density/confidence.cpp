@@ -2,34 +2,48 @@
 #include "density/confidence.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
-#include "dense/features.hpp"
+#include "dense/dense_field.hpp"
 
 namespace curlidar::density {
 namespace {
 
 constexpr double kRight_m = 0.05;
 
-PlaneLine line_to(const Vec3& direction) {
-  return {azimuth_of(direction), {0, 0}, {std::hypot(direction.x, direction.y), direction.z}};
+template <std::size_t kSize>
+void add_sample(const std::array<float, kSize>& features, bool right, Samples& samples) {
+  samples.values.resize(kSize);
+  for (std::size_t i = 0; i < kSize; ++i) samples.values[i].push_back(features[i]);
+  samples.wanted.push_back(right ? 1 : 0);
+  samples.weight.push_back(1);
+}
+
+bool is_right(double told_m, const AskedScan::Place& place) {
+  return place.range_m > 0 && std::abs(told_m - place.range_m) <= kRight_m;
 }
 
 }  // namespace
 
 void add_answers(const AskedScan& scan, Samples& samples) {
-  const RingPoints points(*scan.field);
-  const ScanErrors errors = errors_of(points, *scan.field);
-  samples.values.resize(kPlainFeatures);
+  const DenseField field(scan.field, {});
   for (const AskedScan::Place& place : scan.places) {
-    const Look look = look_along(points, line_to(place.direction));
-    const Guess guess = decide(points, look);
-    if (!(guess.r > 0)) continue;
-    const PlainFeatures features = plain_features(points, look, guess, errors);
-    for (std::size_t i = 0; i < features.size(); ++i) samples.values[i].push_back(features[i]);
-    const bool right = place.range_m > 0 && std::abs(guess.r - place.range_m) <= kRight_m;
-    samples.wanted.push_back(right ? 1 : 0);
-    samples.weight.push_back(1);
+    const DenseField::Found found = field.find(place.line);
+    if (!(found.guess.r > 0)) continue;
+    add_sample(field.features(found), is_right(found.guess.r, place), samples);
+  }
+}
+
+void add_row_answers(const AskedScan& scan, const std::shared_ptr<const DensityProfile>& profile,
+                     Samples& samples) {
+  const DenseField field(scan.field, {.profile = profile, .rows_of_profile = true});
+  for (const AskedScan::Place& place : scan.places) {
+    const DenseField::Found found = field.find(place.line);
+    const DenseField::Verdict verdict = field.judge(found);
+    if (!verdict.row) continue;
+    add_sample(field.features(found, *verdict.row), is_right(verdict.guess.r, place), samples);
   }
 }
 
@@ -52,7 +66,7 @@ double Calibration::worst(double least) const {
 
 Calibration check(const ObliviousTrees& confidence, const Samples& samples) {
   Calibration calibration;
-  PlainFeatures features{};
+  std::vector<float> features(samples.values.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     for (std::size_t k = 0; k < features.size(); ++k) features[k] = samples.values[k][i];
     calibration.add(probability_of(confidence(features)), samples.wanted[i] > 0);

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 
 #include "dense/density_profile.hpp"
 #include "density/asked_scan.hpp"
@@ -13,6 +14,9 @@ namespace curlidar::density {
 
 /// Adds what the rules say at every place of a scan, and whether it is within 5 cm of a surface.
 void add_answers(const AskedScan& scan, Samples& samples);
+/// The same of what rows of a profile measure, where it fits the scan and places are on its rows.
+void add_row_answers(const AskedScan& scan, const std::shared_ptr<const DensityProfile>& profile,
+                     Samples& samples);
 
 /// Shares of answers within 5 cm by what the trees said of them.
 struct Calibration {

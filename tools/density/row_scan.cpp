@@ -33,11 +33,18 @@ void add_missing(const std::vector<RowCell>& ring, std::uint32_t columns,
 
 }  // namespace
 
-Result<Cloud> read_own_frame(const std::string& path) {
+const BeamModel* OwnScan::beams() const {
+  const bool known = lattice && lattice->beams.beams.size() == rings.sensor.rings.size();
+  return known ? &lattice->beams : nullptr;
+}
+
+Result<OwnScan> read_own_frame(const std::string& path) {
   CURLIDAR_TRY_ASSIGN(cloud, read_cloud(path));
   CURLIDAR_TRY_ASSIGN(rings, detect_sensor(cloud));
   CURLIDAR_TRY_ASSIGN(fit, find_sensor_lattice(cloud, rings, {}));
-  return fit ? in_own_frame(cloud, *fit) : std::move(cloud);
+  OwnScan own{path, fit ? in_own_frame(cloud, *fit) : std::move(cloud), std::move(rings), {}};
+  own.lattice = std::move(fit);
+  return own;
 }
 
 Result<RowScan> image_rows(const Cloud& own) {
@@ -63,8 +70,8 @@ Result<RowScan> image_rows(const Cloud& own) {
   return scan;
 }
 
-Result<RowScan> ring_rows(const Cloud& own) {
-  CURLIDAR_TRY_ASSIGN(detection, detect_sensor(own));
+Result<RowScan> ring_rows(const OwnScan& own) {
+  const Detection& detection = own.rings;
   if (detection.source == RingSource::uniform) {
     return Error{ErrorCode::unsupported, "the rings of a scan cannot be told"};
   }
@@ -73,8 +80,8 @@ Result<RowScan> ring_rows(const Cloud& own) {
   scan.columns = detection.sensor.columns;
   scan.exact = true;
   std::vector<std::vector<RowCell>> rings(scan.elevations.size());
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    const Vec3& p = own.positions[i];
+  for (std::size_t i = 0; i < own.cloud.size(); ++i) {
+    const Vec3& p = own.cloud.positions[i];
     const std::uint16_t ring = detection.ring_of_point[i];
     if (ring == kNoRing || !is_return(p)) continue;
     rings[ring].push_back({ring, static_cast<float>(azimuth_of(p)),

@@ -4,13 +4,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "curlidar/cloud.hpp"
 #include "curlidar/result.hpp"
+#include "curlidar/sensor.hpp"
 #include "dense/density_profile.hpp"
 #include "dense/ring_points.hpp"
+#include "sensor/lattice.hpp"
 
 namespace curlidar::density {
 
@@ -30,15 +33,24 @@ struct RowScan {
   std::vector<RowCell> cells;
 };
 
-/// The scan in its sensor's own frame; as it is where its motion cannot be told.
-Result<Cloud> read_own_frame(const std::string& path);
+/// A scan in its sensor's own frame; as it is where its motion cannot be told.
+struct OwnScan {
+  std::string path;
+  Cloud cloud;
+  Detection rings;
+  std::optional<LatticeFit> lattice;
+
+  /// The beams of the rings, as far as they are known.
+  const BeamModel* beams() const;
+};
+Result<OwnScan> read_own_frame(const std::string& path);
 
 /// The cells of the 64 x 1024 image of TULIP's protocol, bench/protocol/tulip_image.hpp.
 Result<RowScan> image_rows(const Cloud& own);
 
-/// The returns of a sensor's rings, and the columns missing between them. Errors: those of
-/// detect_sensor(); unsupported where no rings are found.
-Result<RowScan> ring_rows(const Cloud& own);
+/// The returns of a sensor's rings, and the columns missing between them. Errors: unsupported where
+/// no rings are found.
+Result<RowScan> ring_rows(const OwnScan& own);
 
 /// The returns of the given rows, or of the others, on their rings; where elevations are not known
 /// they are the profile's.

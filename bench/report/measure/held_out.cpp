@@ -10,7 +10,7 @@
 #include "base/try.hpp"
 #include "protocol/ring_split.hpp"
 #include "report/measure/calibrated.hpp"
-#include "report/measure/held_out_lines.hpp"
+#include "protocol/held_out_lines.hpp"
 #include "report/measure/inputs.hpp"
 #include "report/measure/methods.hpp"
 #include "report/measure/own_scan.hpp"

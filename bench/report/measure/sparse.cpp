@@ -10,7 +10,7 @@
 #include "curlidar/compare.hpp"
 #include "curlidar/reconstruct.hpp"
 #include "report/measure/codecs.hpp"
-#include "report/measure/held_out_lines.hpp"
+#include "protocol/held_out_lines.hpp"
 #include "report/measure/inputs.hpp"
 #include "report/measure/judge.hpp"
 #include "report/measure/own_scan.hpp"

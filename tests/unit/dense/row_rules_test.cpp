@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -165,6 +166,27 @@ TEST(RowRules, AreForTheRingsOfTheProfile) {
   other.elevation_mdeg.row(4).fill(1700);
   EXPECT_THAT(why_not(other), testing::HasSubstr("ring 1"));
   EXPECT_EQ(why_not({}), "");  // no rows: it fits everything
+}
+
+TEST(Features, KnowHowRoughSamplesAreAndHowLargeTheirPatches) {
+  const RingPoints points = tower();
+  ScanErrors errors = errors_of(points);
+  const auto last = [&](double azimuth) {
+    Look look = look_along(points, {azimuth, {0, 0}, {1, .01}});
+    const PlainFeatures all = plain_features(points, look, decide(points, look), errors);
+    return std::vector<float>(all.end() - 4, all.end());
+  };
+  // A round wall is out of straight by half a degree's arc at most; nothing is coded.
+  std::vector<float> found = last(0.3);
+  EXPECT_NEAR(found[0], 0, 2e-3);
+  EXPECT_NEAR(found[1], 0, 2e-3);
+  EXPECT_EQ(found[2], -1);
+  EXPECT_EQ(found[3], -1);
+  errors.patch_cells.assign(3 * 360, 8);  // of the middle ring 32 cells, the others eight
+  std::fill_n(errors.patch_cells.begin() + 360, 360, 32u);
+  found = last(0.3);
+  EXPECT_EQ(found[2], 3);
+  EXPECT_EQ(found[3], 5);
 }
 
 TEST(Features, AreNumbersWhateverIsAround) {

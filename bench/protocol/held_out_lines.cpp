@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "report/measure/held_out_lines.hpp"
+#include "protocol/held_out_lines.hpp"
 
 #include <cmath>
 #include <cstdint>
