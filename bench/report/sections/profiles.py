@@ -8,7 +8,7 @@ from frame.scans import every_scan_beside
 
 PROGRAM = "density"
 IMAGE = ("--return-trees", "40", "--residual-trees", "0", "--depth", "5")
-RINGS = ("--return-trees", "0", "--residual-trees", "0")
+RINGS = ("--return-trees", "0", "--residual-trees", "0", "--row-confidence-trees", "0")
 
 
 def drive_of(scan):
