@@ -51,7 +51,7 @@ struct DenseSettings {
 /// Between them a surface is interpolated from the returns of the two rings that are above and
 /// below as seen from where the line of sight starts, planes exactly; where the two rings saw
 /// different surfaces one of them is chosen, never a place between; where neither saw any, there is
-/// nothing. O(cells) to make, 1.5 to 2.5 us a line of sight.
+/// nothing. O(cells) to make; 0.4 us a place on a row, 2 to 4 us any line with its confidence.
 std::shared_ptr<const Field> dense_field(std::shared_ptr<const Field> field,
                                          const DenseSettings& settings = {});
 

@@ -116,6 +116,17 @@ TEST(CompactField, EmptyCellsHoldNothingButWithoutMasksEveryDirectionDoes) {
   EXPECT_EQ(all.size(), field.lattice().cells());
 }
 
+TEST(CompactField, SaysNothingOfPlacesThatAreNone) {
+  const DecodedScan scan = coded(round_room(false), 0.01);
+  const double nan = std::nan(""), infinite = HUGE_VAL;
+  for (const auto& [row, column] : {std::pair{7.5, nan}, {7.5, infinite}, {nan, 3.0}}) {
+    EXPECT_TRUE(std::isnan(range_at(*scan.field, row, column, true)));
+    EXPECT_TRUE(std::isnan(range_at(*scan.field, row, column, false)));
+    EXPECT_LT(scan.field->nearest_cell(row, column), scan.field->lattice().cells());
+  }
+  EXPECT_NEAR(range_at(*scan.field, 7.5, 1e300), 8, .6);
+}
+
 TEST(CompactField, WrapsAroundTheTurn) {
   const DecodedScan scan = coded(round_room(false), 0.01);
   for (const double column : {0.25, 255.75}) {

@@ -45,6 +45,19 @@ TEST(Lattice, RowsAndColumnsInvertElevationsAndAzimuths) {
   EXPECT_LT(uneven.column_of(std::nextafter(-std::numbers::pi, -4)), 360);
 }
 
+TEST(Lattice, TakesAnyNumberForAColumnAndARow) {
+  const Lattice lattice = Lattice::from_rings({0.3, 0.1, 0.05, -0.4}, 360);
+  EXPECT_EQ(lattice.within_turn(-0.5), 359.5);
+  EXPECT_EQ(lattice.within_turn(720), 0);
+  const double infinite = HUGE_VAL, nan = std::nan("");
+  for (const double any : {1e300, -1e300, 1e17, -1e17, -1e-300, infinite, -infinite, nan}) {
+    EXPECT_GE(lattice.within_turn(any), 0) << any;
+    EXPECT_LT(lattice.within_turn(any), 360) << any;
+    EXPECT_LT(lattice.column_of(any), 360) << any;
+  }
+  EXPECT_TRUE(std::isnan(lattice.elevation(nan)));
+}
+
 TEST(Lattice, DenseGridKeepsTheLastRowAndAddsAboveTheFirst) {
   const Lattice lattice = Lattice::uniform(64, 1024, 2 * kDegree, -24.9 * kDegree);
   const DenseGrid twice(lattice, 2, 2);
