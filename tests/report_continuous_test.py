@@ -197,10 +197,13 @@ class GoalsTest(unittest.TestCase):
             context.left_out = Path(folder)
             self.assertIsNone(profiles.confidence_without(context, KITTI))
             (context.left_out / "kitti_raw.toml").touch()
+            (context.left_out / "rings-2-kitti_raw.toml").touch()
             self.assertEqual(profiles.confidence_taught(context),
                              "taught without the scan's own group")
             continuous.held_out_of(context, KITTI, 2)
-        self.assertIn("--confidence", context.asked[-1])
+        command = context.asked[-1]
+        self.assertTrue(command[command.index("--confidence") + 1].endswith("/kitti_raw.toml"))
+        self.assertTrue(command[command.index("--profile") + 1].endswith("/rings-2-kitti_raw.toml"))
 
 
 class ConfidenceTest(unittest.TestCase):

@@ -50,8 +50,9 @@ def arguments():
     only.add_argument("--real", action="store_true", help="no simulated scenes")
     parser.add_argument("--all", action="store_true", help="every scan of CURLIDAR_DATA")
     parser.add_argument("--left-out", type=Path, metavar="DIR",
-                        help="confidence that was taught without a group of scans, GROUP.toml each "
-                             "(tools/README.md): rings held out of its scans are judged by it")
+                        help="what was taught without a group of scans: GROUP.toml tells confidence, "
+                             "rings-K-GROUP.toml (if there) is the profile of every K-th ring "
+                             "(tools/README.md); the group's scans are judged by them")
     parser.add_argument("--sections", metavar="LIST", default=",".join(SECTIONS),
                         help=f"only these, of {','.join(SECTIONS)}")
     parser.add_argument("--jobs", type=int, default=min(2, os.cpu_count() or 1), metavar="N",

@@ -111,8 +111,7 @@ def truth_command(context, program, scene):
 
 def held_out_of(context, scan, every):
     command = held_out_command(context.bin / "report_measure", scan, scan.path, every)
-    profile = profiles.without_drive(context, scan, "rings", "--every", str(every),
-                                     *profiles.RINGS)
+    profile = profiles.rings_without(context, scan, every)
     confidence = profiles.confidence_without(context, scan)
     return context.measure("continuous", {"input": scan.name, "part": "held out", "every": every},
                            command + (["--profile", profile] if profile else [])

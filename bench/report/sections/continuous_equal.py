@@ -97,7 +97,7 @@ def held_out(measured, taught):
          "half of the same scan. The most trusted half: the returns with the highest confidence. "
          "At 5 mm: from a file of that mean error, for what is lost whatever coding loses.",
          "Profile of other drives: tables of the held-out rings, fitted to the scans at hand of "
-         "all drives but that of the scan; confidence as without it."], more)
+         "all drives but that of the scan."], more)
 
 
 def table(name, title, counts, identity, rows, notes, more=()):

@@ -29,13 +29,23 @@ def without_drive(context, scan, kind, *options):
                                   OUTPUT, *options, "--threads", "1"])
 
 
-def confidence_without(context, scan):
-    """The file of --left-out that tells confidence without what the scan's group taught; None where
-    there is none."""
+def file_without(context, scan, prefix=""):
+    """A file of --left-out that the scan's group had no part in; None where there is none."""
     if context.left_out is None:
         return None
-    path = context.left_out / (drive_of(scan).replace("/", "-") + ".toml")
+    path = context.left_out / (prefix + drive_of(scan).replace("/", "-") + ".toml")
     return path if path.is_file() else None
+
+
+def rings_without(context, scan, every):
+    """The profile of every K-th ring that other drives taught: that of --left-out, which may know
+    confidence, too, or one that is fitted now and does not, for that takes coding them all."""
+    return file_without(context, scan, f"rings-{every}-") or without_drive(
+        context, scan, "rings", "--every", str(every), *RINGS)
+
+
+def confidence_without(context, scan):
+    return file_without(context, scan)
 
 
 def confidence_taught(context):

@@ -52,11 +52,10 @@ def judged(context):
 def scores_of(context, scan):
     """Lines of methods."""
     command = [context.bin / "report_measure", "upsampling", scan.path]
-    for option, kind, options in (
-            ("--profile", "image", profiles.IMAGE),
-            ("--rings-profile", "rings", ("--every", str(EVERY), *profiles.RINGS))):
-        if profile := profiles.without_drive(context, scan, kind, *options):
-            command += [option, profile]
+    for option, profile in (
+            ("--profile", profiles.without_drive(context, scan, "image", *profiles.IMAGE)),
+            ("--rings-profile", profiles.rings_without(context, scan, EVERY))):
+        command += [option, profile] if profile else []
     lines = context.measure("upsampling", {"input": scan.name, "part": "protocol"}, command)
     return [line for line in lines if "method" in line]
 
