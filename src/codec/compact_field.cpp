@@ -301,7 +301,13 @@ std::vector<Vec3> CompactField::cell_points() const {
 }
 
 double CompactField::step_m() const {
-  return static_cast<double>(scan_.parameters.step) / compact::kRangeUnit;
+  // Where there is a residual layer, and all of it is here, it has the last word.
+  const compact::ScanParameters& parameters = scan_.parameters;
+  const bool refined =
+      parameters.residual_step > 0 && scan_.missing.empty() &&
+      std::all_of(scan_.segments.begin(), scan_.segments.end(),
+                  [](const compact::DecodedSegment& s) { return s.residual_rows > 0; });
+  return metres(refined ? std::min(parameters.residual_step, parameters.step) : parameters.step);
 }
 
 double CompactField::ring_offset_m(std::uint32_t row) const {

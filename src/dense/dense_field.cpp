@@ -145,10 +145,10 @@ float DenseField::confidence_of(const Found& found, const Verdict& verdict) cons
   }
   const bool own = profile_ && !profile_->confidence.empty();
   const ObliviousTrees& trees = own ? profile_->confidence : generic_confidence();
-  // Trees were taught by steps up to about this; the larger one is, the less often a surface that
-  // it rounds lies within 5 cm.
-  constexpr double kTaughtStep_m = 0.8;
-  const double coarse = std::max(errors_.step_m / kTaughtStep_m, 1.0);
+  // Trees were taught by steps up to this; the larger one is, the less often a surface that it
+  // rounds lies within 5 cm. Large patches lose less: hence the root.
+  constexpr double kTaughtStep_m = 0.6;
+  const double coarse = std::sqrt(std::max(errors_.step_m / kTaughtStep_m, 1.0));
   // That a surface is there the trees have a say in too: what the profile knows is a limit to it.
   return static_cast<float>(
       std::min(probability_of(trees(features(found))) / coarse, verdict.returns));
