@@ -125,6 +125,9 @@ void fit_predicted_rows(std::span<const RowScan> scans, DensityProfile& profile)
   profile.bias_mm = RangeTable(profile.rows);
   for (std::size_t row = 0; row < profile.rows; ++row) {
     take_medians(misses[row], kEnough, 0, profile.bias_mm.row(row));
+    for (std::int16_t& bias : profile.bias_mm.row(row)) {  // a few far misses make no metres
+      bias = std::clamp<std::int16_t>(bias, -kMaxBias_mm, kMaxBias_mm);
+    }
   }
 }
 
