@@ -14,11 +14,6 @@ namespace curlidar::app {
 namespace fs = std::filesystem;
 namespace {
 
-bool is_directory(const std::string& path) {
-  std::error_code error;
-  return path.ends_with('/') || fs::is_directory(path, error);
-}
-
 void make_directory(const std::string& path) {
   std::error_code error;
   fs::create_directories(path, error);
@@ -81,6 +76,11 @@ std::optional<Failed> run_job(const JobBody& body, const Job& job, const Progres
 }
 
 }  // namespace
+
+bool is_directory(const std::string& path) {
+  std::error_code error;
+  return path.ends_with('/') || fs::is_directory(path, error);
+}
 
 std::string stem_of(const std::string& path) {
   if (path == "-") return "stdin";

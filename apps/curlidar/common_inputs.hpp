@@ -29,6 +29,8 @@ std::vector<Job> plan_jobs(const std::vector<std::string>& inputs, const std::st
 /// Jobs of a command that makes no files.
 std::vector<Job> plan_jobs(const std::vector<std::string>& inputs);
 
+/// Whether a name is that of a directory, existing or, by its last '/', to be made.
+bool is_directory(const std::string& path);
 /// "scans/0001.pcd.bin" -> "0001".
 std::string stem_of(const std::string& path);
 /// Failure(kExitUsage) if both names are one existing file; `output` must not replace `input`.

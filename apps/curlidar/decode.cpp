@@ -10,7 +10,8 @@
 #include <string_view>
 
 #include "commands.hpp"
-#include "decode_options.hpp"
+#include "common_inputs.hpp"
+#include "decode_plan.hpp"
 
 namespace curlidar::app {
 namespace {
@@ -106,8 +107,8 @@ Outcome write_mesh_of(const Job& job, const DecodedScan& scan, const DecodePlan&
   const SurfaceMesh mesh = need(reconstruct_mesh(scan, settings, progress));
   const double ms = milliseconds_since(start);
   warn_if_empty(job, scan, plan, mesh.vertices.size());
-  need(
-      write_mesh(job.output, mesh.vertices, mesh.triangles, plan.writing().encoding, mesh.normals));
+  need(write_mesh(job.output, mesh.vertices, mesh.triangles, plan.writing().encoding, mesh.normals,
+                  plan.mesh_format()));
   Json json = report_json(scan, settings, mesh.vertices.size(), ms);
   json["triangles"] = mesh.triangles.size();
   return {json, fmt::format("{} -> {}  {} vertices, {} triangles, {}\n", job.input, job.output,
@@ -117,13 +118,14 @@ Outcome write_mesh_of(const Job& job, const DecodedScan& scan, const DecodePlan&
 
 Outcome write_cloud_of(const Job& job, const DecodedScan& scan, const DecodePlan& plan,
                        Clock::time_point start, const ProgressCallback& progress) {
-  const Cloud cloud = plan.cloud(scan, progress);
+  const ReconstructSettings settings = plan.settings(scan);
+  const Cloud cloud = plan.cloud(scan, settings, progress);
   const double ms = milliseconds_since(start);
   const std::size_t points = count_returns(cloud);
   warn_if_empty(job, scan, plan, points);
   warn_of_empty_slots(job, cloud, plan, points);
   save_cloud(job.output, cloud, plan.writing(), kAttributesHint);
-  return {report_json(scan, plan.settings(scan), points, ms),
+  return {report_json(scan, settings, points, ms),
           fmt::format("{} -> {}  {} points ({} coded), {}\n", job.input, job.output,
                       count_text(points), count_text(scan.coded_returns), milliseconds_text(ms))};
 }

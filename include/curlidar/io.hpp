@@ -81,12 +81,17 @@ Result<std::vector<std::byte>> format_cloud(const Cloud& cloud, const std::strin
 /// An attribute that the format cannot hold is an error, never dropped silently.
 Status write_cloud(const std::string& path, const Cloud& cloud, const WriteOptions& options = {});
 
-/// Writes a triangle mesh with float32 vertices: OBJ if `path` ends in .obj, otherwise PLY in the
-/// given encoding (ascii or binary, little endian). "-" is standard output. `normals` are of the
-/// vertices, or none. Atomic.
+enum class MeshFormat { ply, obj };
+/// By file name, whatever the case of its letters.
+std::optional<MeshFormat> mesh_format_by_extension(std::string_view path);
+
+/// Writes a triangle mesh with float32 vertices: in the format given or, without, that of the
+/// extension of `path`; else as PLY. PLY has the given encoding (ascii or binary, little endian).
+/// "-" is standard output. `normals` are of the vertices, or none. Atomic.
 Status write_mesh(const std::string& path, std::span<const Vec3> vertices,
                   std::span<const std::array<std::uint32_t, 3>> triangles,
-                  Encoding encoding = Encoding::binary, std::span<const Vec3> normals = {});
+                  Encoding encoding = Encoding::binary, std::span<const Vec3> normals = {},
+                  std::optional<MeshFormat> format = {});
 
 /// Whole-file helpers used by every command ("-" is standard input/output; writes are atomic).
 Result<std::vector<std::byte>> read_file(const std::string& path);

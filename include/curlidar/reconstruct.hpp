@@ -24,48 +24,68 @@
 
 namespace curlidar {
 
+/// Factors on the coded lattice's rows and columns, and points on a square metre, lie between
+/// these.
+inline constexpr double kLeastFactor = 1e-3, kMostFactor = 4096;
+inline constexpr double kLeastDensity = 1e-3, kMostDensity = 1e8;
+
 struct ReconstructSettings {
-  double rows = 1;         ///< R_row: factor on the coded lattice's rows, may be fractional, > 0
+  double rows = 1;         ///< R_row: factor on the coded lattice's rows, may be fractional
   double columns = 1;      ///< R_col
-  bool masks = true;       ///< only what is believed; off gives every direction a point if it can
+  bool masks = true;       ///< only what is believed; off gives a point wherever one can be guessed
   bool organised = false;  ///< keep the grid, with NaN where there is nothing
-  /// What decides between the samples; files of the paper's profiles have masks unless told
-  /// otherwise, compact files the best.
+  /// What decides between the samples; usual_strategy() if not told.
   std::optional<DenseStrategy> strategy{};
   /// What scans of the sensor taught, for strategy best; one that does not fit the file's rings is
   /// left aside (check_density_profile tells).
   std::shared_ptr<const DensityProfile> density_profile{};
-  /// Invented points are left out below this confidence, in [0, 1].
+  /// What continuous_field() made of the scan, for more than one question to it; if null it is made
+  /// anew. Strategy and density profile are those that it was made with.
+  std::shared_ptr<const Field> field{};
+  /// Invented points are left out below this confidence, in [0, 1]. Of strategy best.
   double min_confidence = 0;
-  bool confidence = false;  ///< attribute "confidence" (float32; coded returns have 1)
+  /// Attribute "confidence" (float32): of coded returns 1; of invented points with strategy best.
+  bool confidence = false;
   /// Attributes "normal_x", "normal_y", "normal_z" (float32): of the surface, towards the sensor;
   /// NaN where it is not known.
   bool normals = false;
   /// All coded returns come first, exactly and with their own attributes; no invented point lies
   /// within half a cell (of densities: half the spacing) of one. Of grids and densities only.
   bool keep_originals = false;
-  bool original =
-      false;  ///< attribute "original" (uint8): 1 of coded returns, 0 of invented points
+  /// Attribute "original" (uint8): 1 of coded returns, 0 of invented points. Grids other than 1 x 1
+  /// and densities hold coded returns only if they are kept: all their other points are invented.
+  bool original = false;
   /// The part of the scan that was decoded: nothing is invented outside its azimuths.
   std::optional<ScanRegion> region{};
   std::size_t threads = 1;                ///< never changes the result; 0 = all cores
   std::uint64_t max_points = 1ull << 31;  ///< refuse larger results
 };
 
-/// The continuous field that all of these ask: the scan's own, seen with a strategy (nullopt: as
-/// the settings have it by default). For queries of one's own: Field::range_at. O(cells) to make.
+/// What decides between the samples of a file unless told otherwise: best, but of the paper's
+/// profiles masks.
+DenseStrategy usual_strategy(const DecodedScan& scan);
+
+/// The continuous field that all of these ask: the scan's own, seen with a strategy (nullopt: the
+/// usual one). For queries of one's own: Field::range_at. O(cells) to make.
 std::shared_ptr<const Field> continuous_field(
     const DecodedScan& scan, std::optional<DenseStrategy> strategy = {},
     std::shared_ptr<const DensityProfile> density_profile = {});
 
+/// Invalid_argument for settings that points cannot be invented with, whatever is asked for:
+/// factors or a confidence out of bounds, confidence or a density profile with strategy masks,
+/// which tells of none. All of the functions below refuse them; `reconstruct` with factors 1 x 1
+/// and masks, which invents nothing, only what is out of bounds.
+Status check_settings(const DecodedScan& scan, const ReconstructSettings& settings);
+
 /// The cloud seen on an R_row x R_col times denser grid. With factors 1 x 1 and masks: the coded
-/// returns one for one with their attributes, or the encoded cloud of files with every return.
+/// returns one for one with their attributes, or the encoded cloud of files with every return,
+/// whatever the strategy, the confidence wanted, and whether originals are to be kept.
 ///
 /// Attributes of invented points: measured ones (intensity, ...) are interpolated between the coded
 /// returns of the surface, those that name or count (ring, time, returns, labels, packed colours,
 /// 64-bit integers) are taken from the nearest. Compact files cut off or decoded in part give what
-/// is there; nothing there is an empty cloud. Errors: invalid_argument (factors, confidence, files
-/// without a field), limit_exceeded (max_points). About 1 us a point.
+/// is there; nothing there is an empty cloud. Errors: invalid_argument (check_settings, files
+/// without a field), limit_exceeded (max_points, counted before the work). About 1 us a point.
 Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& settings = {},
                           const ProgressCallback& progress = {});
 

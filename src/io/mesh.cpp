@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 
 #include "base/bytes.hpp"
@@ -94,15 +95,28 @@ std::vector<std::byte> ply_binary(const MeshView& mesh) {
 
 }  // namespace
 
+std::optional<MeshFormat> mesh_format_by_extension(std::string_view path) {
+  constexpr std::size_t kLength = 4;
+  if (path.size() < kLength) return std::nullopt;
+  std::string end(path.substr(path.size() - kLength));
+  std::transform(end.begin(), end.end(), end.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  if (end == ".ply") return MeshFormat::ply;
+  if (end == ".obj") return MeshFormat::obj;
+  return std::nullopt;
+}
+
 Status write_mesh(const std::string& path, std::span<const Vec3> vertices,
                   std::span<const Triangle> triangles, Encoding encoding,
-                  std::span<const Vec3> normals) {
+                  std::span<const Vec3> normals, std::optional<MeshFormat> format) {
   if (!normals.empty() && normals.size() != vertices.size()) {
     return Error{ErrorCode::invalid_argument, fmt::format("{}: {} normals for {} vertices", path,
                                                           normals.size(), vertices.size())};
   }
   const MeshView mesh{vertices, triangles, normals};
-  if (path.ends_with(".obj")) return write_file(path, bytes_of(obj_text(mesh)));
+  if (!format) format = mesh_format_by_extension(path);
+  if (format == MeshFormat::obj) return write_file(path, bytes_of(obj_text(mesh)));
   if (encoding == Encoding::ascii) return write_file(path, bytes_of(ply_text(mesh)));
   if (encoding == Encoding::binary) return write_file(path, ply_binary(mesh));
   return Error{ErrorCode::unsupported,

@@ -18,6 +18,7 @@
 
 #include "base/parallel.hpp"
 #include "base/try.hpp"
+#include "reconstruct/coded.hpp"
 #include "reconstruct/finish.hpp"
 #include "reconstruct/normals.hpp"
 #include "reconstruct/originals.hpp"
@@ -323,18 +324,16 @@ Result<Cloud> reconstruct_density(const DecodedScan& scan, double points_per_m2,
   }
   CURLIDAR_TRY(check_kept(settings));
   CURLIDAR_TRY_ASSIGN(view, View::make(scan, settings));
-  CURLIDAR_TRY_ASSIGN(originals, kept_originals(scan, settings.threads));
-  const Sphere sphere = sphere_of(originals.positions);
+  Cloud coded = coded_returns(scan, settings.threads);
+  const Sphere sphere = sphere_of(coded.positions);
   std::optional<TakenPlaces> taken;
   if (settings.keep_originals) {
-    taken.emplace(originals.positions, 0.5 / std::sqrt(points_per_m2));
+    taken.emplace(coded.positions, 0.5 / std::sqrt(points_per_m2));
   }
   CURLIDAR_TRY_ASSIGN(
       samples, sample_surfaces(view, sphere, points_per_m2, taken ? &*taken : nullptr, progress));
-  Cloud invented = finish(view, std::move(samples));
-  if (!settings.keep_originals) return invented;
-  add_extras(view, originals);
-  return behind(std::move(originals), invented);
+  if (!settings.keep_originals) return finish(view, std::move(samples));
+  return finish_behind(view, std::move(coded), std::move(samples));
 }
 
 }  // namespace curlidar

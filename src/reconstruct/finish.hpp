@@ -1,26 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From points to clouds: attributes, and the coded returns among them.
+// From points to clouds: the attributes that the settings ask for.
 #pragma once
 
 #include "reconstruct/view.hpp"
 
 namespace curlidar {
 
-/// The returns as they were coded: the encoded cloud of files with every return, else a point for
-/// each coded cell, organised on the lattice on request.
-Cloud coded_cloud(const DecodedScan& scan, bool organised);
-
-/// Adds what the settings ask for to a cloud of coded returns.
-void add_extras(const View& view, Cloud& coded);
+/// Attributes of coded returns: they are sure, and originals.
+void mark_coded(const ReconstructSettings& settings, Cloud& coded);
+/// Attributes normal_x, normal_y, normal_z.
+void add_normals(const View& view, Cloud& cloud);
 
 /// The cloud of invented points with the scan's attributes and what the settings ask for.
 Cloud finish(const View& view, Samples samples);
 
+/// Invented points behind the coded returns, with what the settings ask for.
+Cloud finish_behind(const View& view, Cloud coded, Samples samples);
+
 /// Invalid_argument if originals are to be kept where they have no place.
 Status check_kept(const ReconstructSettings& settings);
-/// The coded returns alone, without empty slots.
-Result<Cloud> kept_originals(const DecodedScan& scan, std::size_t threads);
-/// `invented` behind `originals`; both have attributes of the same scan.
-Cloud behind(Cloud originals, const Cloud& invented);
 
 }  // namespace curlidar

@@ -2,26 +2,38 @@
 // Paper, III-D: the field sampled on a grid of any density.
 #include "curlidar/reconstruct.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "base/try.hpp"
-#include "reconstruct/attributes.hpp"
+#include "reconstruct/coded.hpp"
 #include "reconstruct/finish.hpp"
 #include "reconstruct/originals.hpp"
 
 namespace curlidar {
 namespace {
 
+/// Nothing is invented on the coded lattice itself.
 bool is_plain(const ReconstructSettings& settings) {
-  return settings.rows == 1 && settings.columns == 1 && settings.masks && !settings.keep_originals;
+  return settings.rows == 1 && settings.columns == 1 && settings.masks;
 }
 
-bool wants_extras(const ReconstructSettings& settings) {
-  return settings.confidence || settings.normals || settings.original;
+Result<Cloud> plain_cloud(const DecodedScan& scan, const ReconstructSettings& settings) {
+  CURLIDAR_TRY(check_bounds(settings));
+  Cloud coded = coded_cloud(scan, settings.organised, settings.threads);
+  CURLIDAR_TRY(check_points(1, coded.size(), "a cloud", settings));
+  mark_coded(settings, coded);
+  if (!settings.normals) return coded;
+  // Between the returns only surfaces are asked for.
+  ReconstructSettings surfaces = settings;
+  surfaces.min_confidence = 0;
+  surfaces.confidence = false;
+  surfaces.density_profile = nullptr;
+  CURLIDAR_TRY_ASSIGN(view, View::make(scan, surfaces));
+  add_normals(view, coded);
+  return coded;
 }
 
 /// Half the elevation between a row of the grid and its neighbours.
@@ -64,24 +76,20 @@ Samples sample_grid(const View& view, const DenseGrid& grid, const TakenDirectio
 
 Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& settings,
                           const ProgressCallback& progress) {
-  const bool whole = scan.cloud && !settings.organised;
-  if (is_plain(settings) && whole && !wants_extras(settings)) return *scan.cloud;
   CURLIDAR_TRY(check_kept(settings));
+  if (is_plain(settings)) return plain_cloud(scan, settings);
   CURLIDAR_TRY_ASSIGN(view, View::make(scan, settings));
-  if (is_plain(settings) && (whole || !scan.points.empty())) {
-    Cloud coded = coded_cloud(scan, settings.organised);
-    add_extras(view, coded);
-    return coded;
-  }
   const DenseGrid grid(view.field().lattice(), settings.rows, settings.columns);
-  CURLIDAR_TRY(check_points(grid.rows, grid.columns, "a grid", settings));
-  if (!settings.keep_originals) return finish(view, sample_grid(view, grid, nullptr, progress));
-  CURLIDAR_TRY_ASSIGN(originals, kept_originals(scan, settings.threads));
-  const TakenDirections taken(originals.positions,
+  if (!settings.keep_originals) {
+    CURLIDAR_TRY(check_points(grid.rows, grid.columns, "a grid", settings));
+    return finish(view, sample_grid(view, grid, nullptr, progress));
+  }
+  Cloud coded = coded_returns(scan, settings.threads);
+  CURLIDAR_TRY(check_points(grid.rows, grid.columns, "a grid", settings, coded.size()));
+  const TakenDirections taken(coded.positions,
                               std::numbers::pi / static_cast<double>(grid.columns));
-  Cloud invented = finish(view, sample_grid(view, grid, &taken, progress));
-  add_extras(view, originals);
-  return behind(std::move(originals), invented);
+  Samples invented = sample_grid(view, grid, &taken, progress);
+  return finish_behind(view, std::move(coded), std::move(invented));
 }
 
 }  // namespace curlidar

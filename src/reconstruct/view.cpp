@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "base/try.hpp"
@@ -13,33 +14,48 @@
 namespace curlidar {
 namespace {
 
-Status check(const DecodedScan& scan, const ReconstructSettings& settings) {
-  const auto is_factor = [](double f) { return f > 0 && f <= 4096; };
+/// Both have nothing to say where masks decide.
+Status check_told(bool wanted, const char* what) {
+  if (!wanted) return {};
+  return Error{
+      ErrorCode::invalid_argument,
+      fmt::format("masks tell nothing of {}: ask with strategy best (--strategy best)", what)};
+}
+
+}  // namespace
+
+DenseStrategy usual_strategy(const DecodedScan& scan) {
+  return scan.profile == Profile::compact ? DenseStrategy::best : DenseStrategy::masks;
+}
+
+std::shared_ptr<const Field> continuous_field(
+    const DecodedScan& scan, std::optional<DenseStrategy> strategy,
+    std::shared_ptr<const DensityProfile> density_profile) {
+  return dense_field(scan.field,
+                     {strategy.value_or(usual_strategy(scan)), std::move(density_profile)});
+}
+
+Status check_bounds(const ReconstructSettings& settings) {
+  const auto is_factor = [](double f) { return f >= kLeastFactor && f <= kMostFactor; };
   if (!is_factor(settings.rows) || !is_factor(settings.columns)) {
     return Error{ErrorCode::invalid_argument,
-                 fmt::format("the factors {} x {} are not above 0 and at most 4096", settings.rows,
-                             settings.columns)};
+                 fmt::format("the factors {} x {} do not lie between {} and {}", settings.rows,
+                             settings.columns, kLeastFactor, kMostFactor)};
   }
   if (!(settings.min_confidence >= 0 && settings.min_confidence <= 1)) {
     return Error{ErrorCode::invalid_argument,
                  fmt::format("the least confidence {} is not a probability from 0 to 1",
                              settings.min_confidence)};
   }
-  if (scan.records && scan.records->lattice == RecordLattice::none) {
-    return Error{ErrorCode::invalid_argument,
-                 "the file holds its points one after the other, without a field: it gives them as "
-                 "they are, without other rows, columns or a grid"};
-  }
   return {};
 }
 
-}  // namespace
-
-std::shared_ptr<const Field> continuous_field(
-    const DecodedScan& scan, std::optional<DenseStrategy> strategy,
-    std::shared_ptr<const DensityProfile> density_profile) {
-  const auto usual = scan.profile == Profile::compact ? DenseStrategy::best : DenseStrategy::masks;
-  return dense_field(scan.field, {strategy.value_or(usual), std::move(density_profile)});
+Status check_settings(const DecodedScan& scan, const ReconstructSettings& settings) {
+  CURLIDAR_TRY(check_bounds(settings));
+  const DenseStrategy strategy = settings.strategy.value_or(usual_strategy(scan));
+  if (settings.field || strategy != DenseStrategy::masks) return {};
+  CURLIDAR_TRY(check_told(settings.confidence || settings.min_confidence > 0, "confidence"));
+  return check_told(settings.density_profile != nullptr, "density profiles");
 }
 
 void Samples::append(const Samples& other) {
@@ -66,10 +82,17 @@ void Samples::drop_empty() {
 View::View(const DecodedScan& scan, const ReconstructSettings& settings)
     : scan_(&scan),
       settings_(settings),
-      field_(continuous_field(scan, settings.strategy, settings.density_profile)) {}
+      field_(settings.field ? settings.field
+                            : continuous_field(scan, settings.strategy, settings.density_profile)) {
+}
 
 Result<View> View::make(const DecodedScan& scan, const ReconstructSettings& settings) {
-  CURLIDAR_TRY(check(scan, settings));
+  CURLIDAR_TRY(check_settings(scan, settings));
+  if (scan.records && scan.records->lattice == RecordLattice::none) {
+    return Error{ErrorCode::invalid_argument,
+                 "the file holds its points one after the other, without a field: it gives them as "
+                 "they are, without other rows, columns or a grid"};
+  }
   return View(scan, settings);
 }
 
@@ -92,7 +115,7 @@ void View::look(std::span<const Sightline> lines, std::span<Vec3> points,
     confidence[i] = estimate.confidence;
     points[i] = kNoPoint;
     if (settings_.masks ? !estimate.valid() : std::isnan(estimate.range_m)) continue;
-    if (estimate.confidence < settings_.min_confidence) continue;
+    if (!sure(estimate.confidence)) continue;
     const Vec3& d = lines[i].direction;
     const Vec3 point = lines[i].origin + d * (estimate.range_m / norm(d));
     if (holds(point)) points[i] = point;
@@ -113,7 +136,7 @@ void View::look_along_row(double row, std::span<const double> columns, std::span
   for (std::size_t i = 0; i < columns.size(); ++i) {
     const bool found = !std::isnan(ranges[i]) && holds(points[i]);
     if (!all_the_same) confidence[i] = estimates[i].confidence;
-    if (!found || confidence[i] < settings_.min_confidence) points[i] = kNoPoint;
+    if (!found || !sure(confidence[i])) points[i] = kNoPoint;
   }
 }
 
@@ -135,11 +158,13 @@ std::vector<Sightline> lines_of_row(const Field& field, double row,
 }
 
 Status check_points(std::uint64_t rows, std::uint64_t columns, const char* what,
-                    const ReconstructSettings& settings) {
-  if (columns == 0 || rows <= settings.max_points / columns) return {};
+                    const ReconstructSettings& settings, std::uint64_t kept) {
+  const std::uint64_t most = settings.max_points;
+  if (kept <= most && (columns == 0 || rows <= (most - kept) / columns)) return {};
+  const std::string beside = kept == 0 ? "" : fmt::format(", with the {} returns kept,", kept);
   return Error{ErrorCode::limit_exceeded,
-               fmt::format("{} of {} x {} has more than the {} points allowed", what, rows, columns,
-                           settings.max_points)};
+               fmt::format("{} of {} x {}{} has more than the {} points allowed", what, rows,
+                           columns, beside, most)};
 }
 
 }  // namespace curlidar

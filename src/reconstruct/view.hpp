@@ -33,7 +33,7 @@ struct Samples {
 /// The field of a scan and what of it is to be believed. `scan` must outlive the view.
 class View {
  public:
-  /// Invalid_argument for settings out of bounds and for files without a field.
+  /// Invalid_argument as check_settings says, and for files without a field.
   static Result<View> make(const DecodedScan& scan, const ReconstructSettings& settings);
 
   const DecodedScan& scan() const { return *scan_; }
@@ -51,6 +51,11 @@ class View {
   bool holds(const Vec3& point) const;
 
  private:
+  /// Whether that much is enough; a confidence that is not told (NaN) is, if none is wanted.
+  bool sure(float confidence) const {
+    return settings_.min_confidence == 0 || confidence >= settings_.min_confidence;
+  }
+
   View(const DecodedScan& scan, const ReconstructSettings& settings);
 
   const DecodedScan* scan_;
@@ -75,9 +80,12 @@ void in_batches(std::size_t count, std::size_t batch, const ProgressCallback& pr
   }
 }
 
-/// Limit_exceeded for more points than the settings allow; `what` makes them.
+/// Invalid_argument for factors and confidences that lie nowhere.
+Status check_bounds(const ReconstructSettings& settings);
+
+/// Limit_exceeded for more points than the settings allow; `what` makes them beside those kept.
 Status check_points(std::uint64_t rows, std::uint64_t columns, const char* what,
-                    const ReconstructSettings& settings);
+                    const ReconstructSettings& settings, std::uint64_t kept = 0);
 
 inline constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
 inline constexpr Vec3 kNoPoint{kNowhere, kNowhere, kNowhere};

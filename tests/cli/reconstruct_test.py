@@ -120,6 +120,23 @@ class DensityTest(ReconstructCommandTest):
         self.assertEqual(set(both[0]), {"x", "y", "z", "ring", "confidence", "original"})
 
 
+class GridTest(ReconstructCommandTest):
+    def test_factors_beyond_the_limits_are_wrong_usage(self):
+        for option in ("--rows", "--cols"):
+            for factor in (4097, 0.0009):
+                self.run_fail(USAGE, "decode", "scan.curl", option, factor, "-o", "no.pcd",
+                              says=[option, "4096"])
+        self.assertEqual(self.decode("--rows", 0.001, "--cols", 0.001, "-o", "p.pcd")["rows"], 0.001)
+
+    def test_nothing_is_invented_at_1_x_1(self):
+        self.run_ok("decode", "scan.curl", "-o", "plain.pcd")
+        plain = self.path("plain.pcd").read_bytes()
+        for options in (["--keep-originals"], ["--min-confidence", 0.9], ["--rows", 1],
+                        ["--keep-originals", "--strategy", "masks"]):
+            self.run_ok("decode", "scan.curl", *options, "-o", "same.pcd")
+            self.assertEqual(self.path("same.pcd").read_bytes(), plain, options)
+
+
 class MeshTest(ReconstructCommandTest):
     def test_ply_and_obj(self):
         report = self.decode("--mesh", "--normals", "-o", "surface.ply")
@@ -136,8 +153,23 @@ class MeshTest(ReconstructCommandTest):
         self.run_ok("decode", "scan.curl", "--mesh")
         self.assertTrue(self.path("scan.decoded.ply").exists())
 
+    def test_obj_by_format_and_in_capitals(self):
+        self.decode("--mesh", "-o", "surface.obj")
+        wanted = self.path("surface.obj").read_bytes()
+        self.decode("--mesh", "-o", "LOUD.OBJ")
+        self.assertEqual(self.path("LOUD.OBJ").read_bytes(), wanted)
+        done = self.execute("decode", "scan.curl", "--mesh", "--format", "obj", "-o", "-")
+        self.assertEqual((done.returncode, done.stdout), (OK, wanted))
+        self.path("twin.curl").write_bytes(self.path("scan.curl").read_bytes())
+        self.run_ok("decode", "scan.curl", "twin.curl", "--mesh", "--format", "obj", "-o", "many/")
+        self.assertEqual(self.files("many"), ["scan.decoded.obj", "twin.decoded.obj"])
+        self.assertEqual(self.path("many/twin.decoded.obj").read_bytes(), wanted)
+
     def test_what_it_is_not_for(self):
         self.run_fail(USAGE, "decode", "scan.curl", "--mesh", "-o", "mesh.pcd", says=".obj")
+        self.run_fail(USAGE, "decode", "scan.curl", "--mesh", "--format", "pcd", says=".obj")
+        self.run_fail(USAGE, "decode", "scan.curl", "--mesh", "--attributes", "ring",
+                      says="--attributes")
         self.run_fail(USAGE, "decode", "scan.curl", "--mesh", "--density", 10, says="--density")
         self.run_fail(USAGE, "decode", "scan.curl", "--mesh", "--organised", says="--organised")
 
@@ -150,11 +182,48 @@ class BeliefTest(ReconstructCommandTest):
         self.assertGreater(points[1], points[2])
         self.run_fail(USAGE, "decode", "scan.curl", "--min-confidence", 1.5, says="1.5")
 
-    def test_strategies(self):
-        best = self.decode("--rows", 4, "-o", "best.pcd")["points"]
-        masks = self.decode("--rows", 4, "--strategy", "masks", "-o", "masks.pcd")["points"]
-        self.assertNotEqual(best, masks)
+    def test_best_finds_more_of_the_truth_than_masks_and_invents_no_more(self):
+        self.simulate("street.pcd", "--truth-output", "truth.pcd", "--truth-rows", 4,
+                      "--grid-rows", "rings")
+        self.run_ok("encode", "street.pcd", "--effort", 1)
+        found = {}
+        for strategy in ("best", "masks"):
+            self.run_ok("decode", "street.curl", "--rows", 4, "--strategy", strategy, "-o",
+                        f"{strategy}.pcd")
+            compared = self.run_json("compare", "truth.pcd", f"{strategy}.pcd", "--thresholds", 0.2)
+            found[strategy] = compared["matches"][0]
+        self.assertGreater(found["best"]["recall"], found["masks"]["recall"] + 0.02)
+        self.assertGreater(found["best"]["precision"], found["masks"]["precision"] - 0.01)
+        self.run_ok("decode", "street.curl", "--rows", 4, "-o", "default.pcd")
+        self.assertEqual(self.path("default.pcd").read_bytes(), self.path("best.pcd").read_bytes())
         self.run_fail(USAGE, "decode", "scan.curl", "--strategy", "hope", says="hope")
+
+    def test_masks_tell_no_confidence(self):
+        self.run_ok("encode", "scan.pcd", "--profile", "paper", "-o", "paper.curl")
+        wanted = [["--min-confidence", 0.5], ["--confidence"], ["--density-profile", "generic"]]
+        for options in wanted:
+            for way in (["--rows", 2], ["--density", 5], ["--mesh"], ["--sensor", "vlp16"]):
+                if "--mesh" in way and "--confidence" in options:
+                    continue
+                self.run_fail(USAGE, "decode", "paper.curl", *way, *options, "-o", "no.ply",
+                              says=["paper.curl", "--strategy best"])
+                self.run_fail(USAGE, "decode", "scan.curl", "--strategy", "masks", *way, *options,
+                              "-o", "no.ply", says=["scan.curl", "--strategy best"])
+        self.assertFalse(self.path("no.ply").exists())
+        best = self.run_json("decode", "paper.curl", "--rows", 2, "--strategy", "best",
+                             "--min-confidence", 0.2, "-o", "best.pcd")
+        self.assertGreater(best["points"], 1000)
+
+    def test_returns_of_paper_files_are_sure_originals(self):
+        self.run_ok("encode", "scan.pcd", "--profile", "paper", "-o", "paper.curl")
+        report = self.run_json("decode", "paper.curl", "-o", "plain.csv", "--attributes", "none")
+        self.run_ok("decode", "paper.curl", "--min-confidence", 0.6, "--confidence", "--original",
+                    "-o", "sure.csv", "--attributes", "none")
+        plain, sure = read_csv(self.path("plain.csv")), read_csv(self.path("sure.csv"))
+        self.assertEqual([[p[k] for k in "xyz"] for p in sure],
+                         [[p[k] for k in "xyz"] for p in plain])
+        self.assertGreater(len(sure), 0.9 * report["points_coded"])
+        self.assertTrue(all(p["confidence"] == p["original"] == 1 for p in sure))
 
     def test_the_sparse_preset(self):
         report = self.decode("--preset", "sparse", "-o", "dense.pcd")
@@ -171,6 +240,21 @@ class BeliefTest(ReconstructCommandTest):
         own = self.decode("--preset", "sparse", "--rows", 2, "--min-confidence", 0, "-o", "d.pcd")
         self.assertEqual((own["rows"], own["min_confidence"]), (2, 0))
         self.run_fail(USAGE, "decode", "scan.curl", "--preset", "dense", says="dense")
+
+    def test_the_sparse_preset_gives_the_returns_of_64_rings(self):
+        self.run_ok("simulate", "--sensor", "hdl64e-kitti", "-o", "many.pcd")
+        self.run_ok("encode", "many.pcd", "--effort", 1)
+        self.run_ok("decode", "many.curl", "-o", "plain.pcd")
+        self.run_ok("decode", "many.curl", "--preset", "sparse", "-o", "preset.pcd")
+        self.assertEqual(self.path("preset.pcd").read_bytes(), self.path("plain.pcd").read_bytes())
+
+    def test_the_sparse_preset_of_paper_files(self):
+        self.run_ok("encode", "scan.pcd", "--profile", "paper", "-o", "paper.curl")
+        sparse = ["decode", "paper.curl", "--preset", "sparse", "-o", "dense.pcd"]
+        report = self.run_json(*sparse)
+        self.assertEqual((report["rows"], report["min_confidence"]), (4, 0.2))
+        self.assertGreater(report["points"], 1.5 * report["points_coded"])
+        self.assertEqual(self.run_json(*sparse, "--strategy", "masks")["min_confidence"], 0)
 
     def test_normals(self):
         self.decode("--rows", 2, "--normals", "-o", "n.csv")

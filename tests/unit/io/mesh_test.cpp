@@ -82,6 +82,20 @@ TEST_F(MeshFile, ObjCountsFromOne) {
             "v 0 0 0\nv 1.5 0 0\nv 0 -2 0.25\nf 1 2 3\nf 3 2 1\n");
 }
 
+TEST_F(MeshFile, FormatsByNameOfAnyCaseOrAsGiven) {
+  EXPECT_EQ(mesh_format_by_extension("a.b/x.OBJ"), MeshFormat::obj);
+  EXPECT_EQ(mesh_format_by_extension("x.Ply"), MeshFormat::ply);
+  for (const char* none : {"", "obj", "x.obj.gz", "x.pcd"}) {
+    EXPECT_EQ(mesh_format_by_extension(none), std::nullopt);
+  }
+  const std::string obj = write("d.obj", Encoding::binary);
+  std::filesystem::remove(path_);
+  path_ = testing::TempDir() + "curlidar_mesh_test_given.ply";
+  ASSERT_TRUE(write_mesh(path_, vertices_, triangles_, Encoding::binary, {}, MeshFormat::obj));
+  const auto bytes = read_file(path_).value();
+  EXPECT_EQ(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()), obj);
+}
+
 TEST_F(MeshFile, OtherEncodingsAreRefused) {
   const Status status = write_mesh("never.ply", vertices_, triangles_, Encoding::binary_compressed);
   ASSERT_FALSE(status);

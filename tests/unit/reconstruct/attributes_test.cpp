@@ -110,6 +110,7 @@ TEST(ReconstructOriginals, ComeFirstAndAreNotDoubled) {
   const DecodedScan scan = test::exact_scan(std::make_shared<BoxScene>(true), test::small_sensor());
   ReconstructSettings settings{.rows = 3, .columns = 2};
   settings.keep_originals = settings.original = settings.confidence = true;
+  settings.field = scan.field;  // as it is: it tells confidences
   const Cloud cloud = reconstruct(scan, settings).value();
   // Of 3 x 2 places one is taken by its return; the two rows above the top have none.
   EXPECT_EQ(cloud.size(), 24u * 256 + (6u * 24 * 256 - 24 * 256));

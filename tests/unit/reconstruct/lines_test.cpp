@@ -16,6 +16,13 @@ DecodedScan box(bool screen = false) {
   return test::exact_scan(std::make_shared<BoxScene>(screen), test::small_sensor());
 }
 
+/// Its field is asked as it is: it tells confidences.
+ReconstructSettings exact_field() {
+  ReconstructSettings settings;
+  settings.field = box().field;
+  return settings;
+}
+
 std::vector<Vec3> some_directions() {
   std::vector<Vec3> directions;
   for (int i = 0; i < 2000; ++i) {
@@ -27,7 +34,9 @@ std::vector<Vec3> some_directions() {
 
 TEST(ReconstructDirections, GivesOnePointForEachInTheirOrderAndNanWhereNothingIsKnown) {
   const std::vector<Vec3> directions = some_directions();
-  const Cloud cloud = reconstruct_directions(box(), directions, {.confidence = true}).value();
+  ReconstructSettings settings = exact_field();
+  settings.confidence = true;
+  const Cloud cloud = reconstruct_directions(box(), directions, settings).value();
   ASSERT_EQ(cloud.size(), directions.size());
   EXPECT_EQ(cloud.width, directions.size());
   const BoxScene scene;
@@ -64,7 +73,7 @@ TEST(ReconstructDirections, NamesTheDirectionThatIsNone) {
 
 TEST(ReconstructDirections, LeastConfidenceAndRegionLeaveTheirSlotsEmpty) {
   const std::vector<Vec3> directions = some_directions();
-  ReconstructSettings settings;
+  ReconstructSettings settings = exact_field();
   settings.min_confidence = 0.5;
   const Cloud sure = reconstruct_directions(box(), directions, settings).value();
   for (const Vec3& p : sure.positions) {
