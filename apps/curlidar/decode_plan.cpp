@@ -210,8 +210,8 @@ ReconstructSettings DecodePlan::settings(const DecodedScan& scan) const {
   settings.threads = command_.common.threads;
   settings.max_points = command_.max_points;
   const bool has_field = !scan.records || scan.records->lattice != RecordLattice::none;
-  if (!has_field || !invents(settings)) return settings;
-  need_option(check_settings(scan, settings));
+  if (!has_field) return settings;
+  if (invents(settings)) need_option(check_settings(scan, settings));
   if (profile_) need(check_density_profile(*profile_, *scan.field));
   return settings;
 }

@@ -14,6 +14,14 @@
 namespace curlidar {
 namespace {
 
+constexpr double kTurn = 2 * std::numbers::pi;
+
+/// Angle counter-clockwise from one azimuth to another, in [0, 2 pi).
+double turn_on(double from, double to) {
+  const double turn = std::fmod(to - from, kTurn);
+  return turn < 0 ? turn + kTurn : turn;
+}
+
 /// Both have nothing to say where masks decide.
 Status check_told(bool wanted, const char* what) {
   if (!wanted) return {};
@@ -84,6 +92,11 @@ View::View(const DecodedScan& scan, const ReconstructSettings& settings)
       settings_(settings),
       field_(settings.field ? settings.field
                             : continuous_field(scan, settings.strategy, settings.density_profile)) {
+  if (!settings.region) return;
+  cropped_ = settings.region->azimuth_end - settings.region->azimuth_begin < kTurn;
+  double nearest = scan.points.empty() ? 0 : norm(scan.points.front());
+  for (const Vec3& p : scan.points) nearest = std::min(nearest, norm(p));
+  nearest_m_ = nearest / 2;
 }
 
 Result<View> View::make(const DecodedScan& scan, const ReconstructSettings& settings) {
@@ -97,46 +110,78 @@ Result<View> View::make(const DecodedScan& scan, const ReconstructSettings& sett
 }
 
 bool View::holds(const Vec3& point) const {
-  if (!settings_.region) return true;
-  const double turn = 2 * std::numbers::pi;
-  const double width = settings_.region->azimuth_end - settings_.region->azimuth_begin;
-  if (width >= turn) return true;
-  double from_begin = std::fmod(azimuth_of(point) - settings_.region->azimuth_begin, turn);
-  if (from_begin < 0) from_begin += turn;
-  return from_begin < width;
+  if (!cropped_) return true;
+  const ScanRegion& region = *settings_.region;
+  return turn_on(region.azimuth_begin, azimuth_of(point)) <
+         region.azimuth_end - region.azimuth_begin;
+}
+
+bool View::may_hold(const Sightline& line) const {
+  constexpr double kMargin = 1e-6;  // radians, for what is rounded
+  if (!cropped_) return true;
+  // Along a straight line the azimuth turns one way, to that of its direction.
+  const double far = azimuth_of(line.direction);
+  const Vec3 start = line.origin + line.direction * (nearest_m_ / norm(line.direction));
+  const bool beside = start.x != 0 || start.y != 0;
+  const double turn = beside ? std::remainder(far - azimuth_of(start), kTurn) : 0;
+  const double first = std::min(far, far - turn) - kMargin;
+  const double width = std::abs(turn) + 2 * kMargin;
+  const ScanRegion& region = *settings_.region;
+  return turn_on(region.azimuth_begin, first) < region.azimuth_end - region.azimuth_begin ||
+         turn_on(first, region.azimuth_begin) < width;
 }
 
 void View::look(std::span<const Sightline> lines, std::span<Vec3> points,
                 std::span<float> confidence, std::size_t threads) const {
-  std::vector<RangeEstimate> estimates(lines.size());
-  field_->range_along(lines, estimates, threads);
+  std::vector<std::size_t> wanted;
+  std::vector<Sightline> asked;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    const RangeEstimate& estimate = estimates[i];
-    confidence[i] = estimate.confidence;
     points[i] = kNoPoint;
+    confidence[i] = 0;
+    if (!may_hold(lines[i])) continue;
+    wanted.push_back(i);
+    asked.push_back(lines[i]);
+  }
+  std::vector<RangeEstimate> estimates(asked.size());
+  field_->range_along(asked, estimates, threads);
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    const RangeEstimate& estimate = estimates[k];
+    confidence[wanted[k]] = estimate.confidence;
     if (settings_.masks ? !estimate.valid() : std::isnan(estimate.range_m)) continue;
     if (!sure(estimate.confidence)) continue;
-    const Vec3& d = lines[i].direction;
-    const Vec3 point = lines[i].origin + d * (estimate.range_m / norm(d));
-    if (holds(point)) points[i] = point;
+    const Vec3& d = asked[k].direction;
+    const Vec3 point = asked[k].origin + d * (estimate.range_m / norm(d));
+    if (holds(point)) points[wanted[k]] = point;
   }
 }
 
 void View::look_along_row(double row, std::span<const double> columns, std::span<Vec3> points,
                           std::span<float> confidence) const {
-  std::vector<double> ranges(columns.size());
-  field_->evaluate_row(row, columns, settings_.masks, ranges);
-  field_->place_row(row, columns, ranges, points);
+  std::fill(points.begin(), points.end(), kNoPoint);
   std::fill(confidence.begin(), confidence.end(), 0.0F);
-  const bool all_the_same = !settings_.confidence && settings_.min_confidence == 0;
+  const bool asks = settings_.confidence || settings_.min_confidence > 0;
   std::vector<Sightline> lines;
-  if (!all_the_same) lines = lines_of_row(*field_, row, columns);
-  std::vector<RangeEstimate> estimates(lines.size());
-  field_->range_along(lines, estimates);
+  if (asks || cropped_) lines = lines_of_row(*field_, row, columns);
+  std::vector<std::size_t> wanted;
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    const bool found = !std::isnan(ranges[i]) && holds(points[i]);
-    if (!all_the_same) confidence[i] = estimates[i].confidence;
-    if (!found || !sure(confidence[i])) points[i] = kNoPoint;
+    if (cropped_ && !may_hold(lines[i])) continue;
+    wanted.push_back(i);
+  }
+  std::vector<double> asked(wanted.size()), ranges(wanted.size());
+  for (std::size_t k = 0; k < wanted.size(); ++k) asked[k] = columns[wanted[k]];
+  std::vector<Vec3> found(wanted.size());
+  field_->evaluate_row(row, asked, settings_.masks, ranges);
+  field_->place_row(row, asked, ranges, found);
+  std::vector<RangeEstimate> estimates(asks ? wanted.size() : 0);
+  if (asks) {
+    for (std::size_t k = 0; k < wanted.size(); ++k) lines[k] = lines[wanted[k]];
+    field_->range_along(std::span(lines).first(wanted.size()), estimates);
+  }
+  for (std::size_t k = 0; k < wanted.size(); ++k) {
+    const std::size_t i = wanted[k];
+    if (asks) confidence[i] = estimates[k].confidence;
+    if (std::isnan(ranges[k]) || !holds(found[k])) continue;
+    if (!asks || sure(confidence[i])) points[i] = found[k];
   }
 }
 

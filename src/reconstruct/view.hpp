@@ -49,6 +49,8 @@ class View {
                       std::span<float> confidence) const;
   /// Whether a point lies in the part of the scan that was asked for.
   bool holds(const Vec3& point) const;
+  /// Whether any point of a line may, from the scan's nearest returns on.
+  bool may_hold(const Sightline& line) const;
 
  private:
   /// Whether that much is enough; a confidence that is not told (NaN) is, if none is wanted.
@@ -60,6 +62,8 @@ class View {
 
   const DecodedScan* scan_;
   ReconstructSettings settings_;
+  bool cropped_ = false;  ///< a part was asked for that is no full turn
+  double nearest_m_ = 0;  ///< half as far as the nearest return
   std::shared_ptr<const Field> field_;
 };
 
