@@ -106,7 +106,12 @@ class Field {
   /// Threads never change the result; 0 = all cores. O(lines).
   virtual void range_along(std::span<const Sightline> lines, std::span<RangeEstimate> estimates,
                            std::size_t threads = 1) const;
-  /// The same from the origin of the cloud's frame; directions of any length above 0.
+  /// The same without confidence, which is told or not: quicker where nobody asks for it.
+  virtual void surfaces_along(std::span<const Sightline> lines, std::span<RangeEstimate> estimates,
+                              std::size_t threads = 1) const {
+    range_along(lines, estimates, threads);
+  }
+  /// As range_along from the origin of the cloud's frame; directions of any length above 0.
   void range_at(std::span<const Vec3> directions, std::span<RangeEstimate> estimates,
                 std::size_t threads = 1) const;
 

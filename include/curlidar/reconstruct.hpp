@@ -37,7 +37,9 @@ struct ReconstructSettings {
   /// What decides between the samples; usual_strategy() if not told.
   std::optional<DenseStrategy> strategy{};
   /// What scans of the sensor taught, for strategy best; one that does not fit the file's rings is
-  /// left aside (check_density_profile tells).
+  /// left aside (check_density_profile tells). What its rows measure too far, their range offsets,
+  /// is given to those who ask as its sensor: by reconstruct_sensor, and by grids with as many rows
+  /// as it has.
   std::shared_ptr<const DensityProfile> density_profile{};
   /// What continuous_field() made of the scan, for more than one question to it; if null it is made
   /// anew. Strategy and density profile are those that it was made with.
@@ -66,10 +68,11 @@ struct ReconstructSettings {
 DenseStrategy usual_strategy(const DecodedScan& scan);
 
 /// The continuous field that all of these ask: the scan's own, seen with a strategy (nullopt: the
-/// usual one). For queries of one's own: Field::range_at. O(cells) to make.
+/// usual one). For queries of one's own: Field::range_at. O(cells) to make. `rows_of_profile`: see
+/// DenseSettings.
 std::shared_ptr<const Field> continuous_field(
     const DecodedScan& scan, std::optional<DenseStrategy> strategy = {},
-    std::shared_ptr<const DensityProfile> density_profile = {});
+    std::shared_ptr<const DensityProfile> density_profile = {}, bool rows_of_profile = false);
 
 /// Invalid_argument for settings that points cannot be invented with, whatever is asked for:
 /// factors or a confidence out of bounds, confidence or a density profile with strategy masks,

@@ -77,25 +77,38 @@ DenseField::Found DenseField::find_in_plane(const PlaneLine& line) const {
   return found;
 }
 
+Sightline DenseField::own_line(const Sightline& line, double azimuth) const {
+  if (!motion_.moves()) return line;
+  const RigidMotion motion = motion_.at(azimuth);
+  return {motion.undo(line.origin), motion.turned_back(line.direction)};
+}
+
+double DenseField::azimuth_at(const Sightline& line, double range_m, double azimuth) const {
+  // Scans turn far faster than they move: each step leaves a hundredth of the error or less.
+  constexpr int kSteps = 3;
+  const int steps = motion_.moves() ? kSteps : 1;
+  for (int step = 0; step < steps; ++step) {
+    const Sightline own = own_line(line, azimuth);
+    azimuth = azimuth_of(own.origin + own.direction * range_m);
+  }
+  return azimuth;
+}
+
 DenseField::Found DenseField::find(const Sightline& line) const {
   // The half-plane is that of the point, which is not known before it is found; where lines leave
   // from the spin axis and nothing moves it is that of the direction.
   constexpr int kPasses = 5;
   constexpr double kClose = 1e-7;      // radians
   constexpr double kSomewhere_m = 20;  // where nothing is found
-  const bool straight = !motion_.moves() && line.origin.x == 0 && line.origin.y == 0;
   double azimuth = azimuth_of(line.direction);
+  const bool straight = !motion_.moves() && line.origin.x == 0 && line.origin.y == 0;
+  if (straight) return find_in_plane(in_plane(line, azimuth));
+  azimuth = azimuth_at(line, kSomewhere_m, azimuth);
   Found found;
   for (int pass = 0; pass < kPasses; ++pass) {
-    Sightline own = line;
-    if (motion_.moves()) {
-      const RigidMotion motion = motion_.at(azimuth);
-      own = {motion.undo(line.origin), motion.turned_back(line.direction)};
-    }
-    found = find_in_plane(in_plane(own, azimuth));
-    if (straight) break;
+    found = find_in_plane(in_plane(own_line(line, azimuth), azimuth));
     const double r = found.guess.r > 0 ? found.guess.r : kSomewhere_m;
-    const double seen = azimuth_of(own.origin + own.direction * r);
+    const double seen = azimuth_at(line, r, azimuth);
     const bool close = std::abs(turn_between(azimuth, seen)) < kClose;
     azimuth = seen;
     if (close) break;
@@ -103,13 +116,13 @@ DenseField::Found DenseField::find(const Sightline& line) const {
   return found;
 }
 
-RangeEstimate DenseField::estimate(const Sightline& line) const {
+RangeEstimate DenseField::estimate(const Sightline& line, bool confident) const {
   RangeEstimate estimate;
-  estimate.confidence = 0;
+  if (confident) estimate.confidence = 0;
   if (!is_sight(line) || points_.empty()) return estimate;
   const Found found = find({line.origin, unit(line.direction)});
   const Verdict verdict = judge(found);
-  estimate.confidence = confidence_of(found, verdict);
+  if (confident) estimate.confidence = confidence_of(found, verdict);
   if (verdict.guess.r > 0) estimate.range_m = verdict.guess.r;
   estimate.seen = verdict.guess.seen;
   return estimate;
@@ -154,13 +167,23 @@ float DenseField::confidence_of(const Found& found, const Verdict& verdict) cons
       std::min(probability_of(trees(features(found))) / coarse, verdict.returns));
 }
 
-void DenseField::range_along(std::span<const Sightline> lines, std::span<RangeEstimate> estimates,
-                             std::size_t threads) const {
+void DenseField::estimate_all(std::span<const Sightline> lines, std::span<RangeEstimate> estimates,
+                              bool confident, std::size_t threads) const {
   constexpr std::size_t kChunk = 4096;
   parallel_for((lines.size() + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
     const std::size_t end = std::min(lines.size(), (chunk + 1) * kChunk);
-    for (std::size_t i = chunk * kChunk; i < end; ++i) estimates[i] = estimate(lines[i]);
+    for (std::size_t i = chunk * kChunk; i < end; ++i) estimates[i] = estimate(lines[i], confident);
   });
+}
+
+void DenseField::range_along(std::span<const Sightline> lines, std::span<RangeEstimate> estimates,
+                             std::size_t threads) const {
+  estimate_all(lines, estimates, true, threads);
+}
+
+void DenseField::surfaces_along(std::span<const Sightline> lines,
+                                std::span<RangeEstimate> estimates, std::size_t threads) const {
+  estimate_all(lines, estimates, false, threads);
 }
 
 double DenseField::along_row(const RowLine& row, PlaneLine line, double column, bool masked) const {
@@ -181,9 +204,6 @@ void DenseField::evaluate_row(double row, std::span<const double> columns, bool 
       0, {0, line.height_m}, {std::cos(line.elevation), std::sin(line.elevation)}};
   for (std::size_t i = 0; i < columns.size(); ++i) {
     ranges[i] = along_row(line, plane, columns[i], masked);
-    if (std::isnan(ranges[i]) && !masked && std::isfinite(columns[i])) {
-      field_->evaluate_row(row, columns.subspan(i, 1), masked, ranges.subspan(i, 1));
-    }
   }
 }
 

@@ -38,6 +38,8 @@ class DenseField final : public Field {
   }
   void range_along(std::span<const Sightline> lines, std::span<RangeEstimate> estimates,
                    std::size_t threads = 1) const override;
+  void surfaces_along(std::span<const Sightline> lines, std::span<RangeEstimate> estimates,
+                      std::size_t threads = 1) const override;
   Sources sources_at(const Vec3& point) const override;
   std::size_t nearest_cell(double row, double column) const override {
     return field_->nearest_cell(row, column);
@@ -73,7 +75,13 @@ class DenseField final : public Field {
 
  private:
   Found find_in_plane(const PlaneLine& line) const;
-  RangeEstimate estimate(const Sightline& line) const;
+  /// A line of the cloud's frame as the sensor's own frame has it at an azimuth.
+  Sightline own_line(const Sightline& line, double azimuth) const;
+  /// Azimuth in the own frame of the place at a range of a line, from one that is near to it.
+  double azimuth_at(const Sightline& line, double range_m, double azimuth) const;
+  RangeEstimate estimate(const Sightline& line, bool confident) const;
+  void estimate_all(std::span<const Sightline> lines, std::span<RangeEstimate> estimates,
+                    bool confident, std::size_t threads) const;
   float confidence_of(const Found& found, const Verdict& verdict) const;
   /// Where the line of a row, turned to a column, meets what is believed or, not `masked`, guessed;
   /// as a range of the row; else NaN.

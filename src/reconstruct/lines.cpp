@@ -99,7 +99,7 @@ Result<Cloud> reconstruct_sensor(const DecodedScan& scan, const SensorProfile& s
                              sensor.name)};
   }
   CURLIDAR_TRY(check_points(sensor.rings.size(), sensor.columns, "a sensor", settings));
-  CURLIDAR_TRY_ASSIGN(view, View::make(scan, settings));
+  CURLIDAR_TRY_ASSIGN(view, View::make(scan, settings, true));
   Samples samples;
   in_batches(sensor.rings.size(), 1, progress, [&](std::size_t ring, std::size_t) {
     samples.append(look_around(view, sensor, ring));

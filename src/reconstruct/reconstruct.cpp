@@ -8,6 +8,7 @@
 
 #include "base/parallel.hpp"
 #include "base/try.hpp"
+#include "dense/density_profile.hpp"
 #include "reconstruct/coded.hpp"
 #include "reconstruct/finish.hpp"
 #include "reconstruct/originals.hpp"
@@ -18,6 +19,12 @@ namespace {
 /// Nothing is invented on the coded lattice itself.
 bool is_plain(const ReconstructSettings& settings) {
   return settings.rows == 1 && settings.columns == 1 && settings.masks;
+}
+
+/// Whether the grid's rows are those of the density profile's sensor.
+bool has_rows_of_profile(const ReconstructSettings& settings) {
+  return settings.density_profile &&
+         settings.rows == static_cast<double>(settings.density_profile->given_every);
 }
 
 Result<Cloud> plain_cloud(const DecodedScan& scan, const ReconstructSettings& settings) {
@@ -78,7 +85,7 @@ Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& se
                           const ProgressCallback& progress) {
   CURLIDAR_TRY(check_kept(settings));
   if (is_plain(settings)) return plain_cloud(scan, settings);
-  CURLIDAR_TRY_ASSIGN(view, View::make(scan, settings));
+  CURLIDAR_TRY_ASSIGN(view, View::make(scan, settings, has_rows_of_profile(settings)));
   const DenseGrid grid(view.field().lattice(), settings.rows, settings.columns);
   if (!settings.keep_originals) {
     CURLIDAR_TRY(check_points(grid.rows, grid.columns, "a grid", settings));

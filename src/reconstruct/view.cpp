@@ -36,11 +36,15 @@ DenseStrategy usual_strategy(const DecodedScan& scan) {
   return scan.profile == Profile::compact ? DenseStrategy::best : DenseStrategy::masks;
 }
 
-std::shared_ptr<const Field> continuous_field(
-    const DecodedScan& scan, std::optional<DenseStrategy> strategy,
-    std::shared_ptr<const DensityProfile> density_profile) {
-  return dense_field(scan.field,
-                     {strategy.value_or(usual_strategy(scan)), std::move(density_profile)});
+std::shared_ptr<const Field> continuous_field(const DecodedScan& scan,
+                                              std::optional<DenseStrategy> strategy,
+                                              std::shared_ptr<const DensityProfile> density_profile,
+                                              bool rows_of_profile) {
+  DenseSettings settings;
+  settings.strategy = strategy.value_or(usual_strategy(scan));
+  settings.profile = std::move(density_profile);
+  settings.rows_of_profile = rows_of_profile;
+  return dense_field(scan.field, settings);
 }
 
 Status check_bounds(const ReconstructSettings& settings) {
@@ -87,11 +91,12 @@ void Samples::drop_empty() {
   height = 1;
 }
 
-View::View(const DecodedScan& scan, const ReconstructSettings& settings)
+View::View(const DecodedScan& scan, const ReconstructSettings& settings, bool rows_of_profile)
     : scan_(&scan),
       settings_(settings),
       field_(settings.field ? settings.field
-                            : continuous_field(scan, settings.strategy, settings.density_profile)) {
+                            : continuous_field(scan, settings.strategy, settings.density_profile,
+                                               rows_of_profile)) {
   if (!settings.region) return;
   cropped_ = settings.region->azimuth_end - settings.region->azimuth_begin < kTurn;
   double nearest = scan.points.empty() ? 0 : norm(scan.points.front());
@@ -99,14 +104,15 @@ View::View(const DecodedScan& scan, const ReconstructSettings& settings)
   nearest_m_ = nearest / 2;
 }
 
-Result<View> View::make(const DecodedScan& scan, const ReconstructSettings& settings) {
+Result<View> View::make(const DecodedScan& scan, const ReconstructSettings& settings,
+                        bool rows_of_profile) {
   CURLIDAR_TRY(check_settings(scan, settings));
   if (scan.records && scan.records->lattice == RecordLattice::none) {
     return Error{ErrorCode::invalid_argument,
                  "the file holds its points one after the other, without a field: it gives them as "
                  "they are, without other rows, columns or a grid"};
   }
-  return View(scan, settings);
+  return View(scan, settings, rows_of_profile);
 }
 
 bool View::holds(const Vec3& point) const {
@@ -143,7 +149,11 @@ void View::look(std::span<const Sightline> lines, std::span<Vec3> points,
     asked.push_back(lines[i]);
   }
   std::vector<RangeEstimate> estimates(asked.size());
-  field_->range_along(asked, estimates, threads);
+  if (asks_confidence()) {
+    field_->range_along(asked, estimates, threads);
+  } else {
+    field_->surfaces_along(asked, estimates, threads);
+  }
   for (std::size_t k = 0; k < asked.size(); ++k) {
     const RangeEstimate& estimate = estimates[k];
     confidence[wanted[k]] = estimate.confidence;
@@ -157,31 +167,26 @@ void View::look(std::span<const Sightline> lines, std::span<Vec3> points,
 
 void View::look_along_row(double row, std::span<const double> columns, std::span<Vec3> points,
                           std::span<float> confidence) const {
-  std::fill(points.begin(), points.end(), kNoPoint);
+  std::vector<double> ranges(columns.size());
+  field_->evaluate_row(row, columns, settings_.masks, ranges);
+  field_->place_row(row, columns, ranges, points);
   std::fill(confidence.begin(), confidence.end(), 0.0F);
-  const bool asks = settings_.confidence || settings_.min_confidence > 0;
-  std::vector<Sightline> lines;
-  if (asks || cropped_) lines = lines_of_row(*field_, row, columns);
-  std::vector<std::size_t> wanted;
+  std::vector<std::size_t> found;
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (cropped_ && !may_hold(lines[i])) continue;
-    wanted.push_back(i);
+    if (!std::isnan(ranges[i]) && holds(points[i])) {
+      found.push_back(i);
+    } else {
+      points[i] = kNoPoint;
+    }
   }
-  std::vector<double> asked(wanted.size()), ranges(wanted.size());
-  for (std::size_t k = 0; k < wanted.size(); ++k) asked[k] = columns[wanted[k]];
-  std::vector<Vec3> found(wanted.size());
-  field_->evaluate_row(row, asked, settings_.masks, ranges);
-  field_->place_row(row, asked, ranges, found);
-  std::vector<RangeEstimate> estimates(asks ? wanted.size() : 0);
-  if (asks) {
-    for (std::size_t k = 0; k < wanted.size(); ++k) lines[k] = lines[wanted[k]];
-    field_->range_along(std::span(lines).first(wanted.size()), estimates);
-  }
-  for (std::size_t k = 0; k < wanted.size(); ++k) {
-    const std::size_t i = wanted[k];
-    if (asks) confidence[i] = estimates[k].confidence;
-    if (std::isnan(ranges[k]) || !holds(found[k])) continue;
-    if (!asks || sure(confidence[i])) points[i] = found[k];
+  if (!asks_confidence()) return;
+  std::vector<double> asked(found.size());
+  for (std::size_t k = 0; k < found.size(); ++k) asked[k] = columns[found[k]];
+  std::vector<RangeEstimate> estimates(found.size());
+  field_->range_along(lines_of_row(*field_, row, asked), estimates);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    confidence[found[k]] = estimates[k].confidence;
+    if (!sure(estimates[k].confidence)) points[found[k]] = kNoPoint;
   }
 }
 

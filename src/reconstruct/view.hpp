@@ -34,7 +34,10 @@ struct Samples {
 class View {
  public:
   /// Invalid_argument as check_settings says, and for files without a field.
-  static Result<View> make(const DecodedScan& scan, const ReconstructSettings& settings);
+  /// `rows_of_profile`: lines that are those of a row of the density profile are to see what that
+  /// row would have measured.
+  static Result<View> make(const DecodedScan& scan, const ReconstructSettings& settings,
+                           bool rows_of_profile = false);
 
   const DecodedScan& scan() const { return *scan_; }
   const ReconstructSettings& settings() const { return settings_; }
@@ -58,7 +61,9 @@ class View {
     return settings_.min_confidence == 0 || confidence >= settings_.min_confidence;
   }
 
-  View(const DecodedScan& scan, const ReconstructSettings& settings);
+  bool asks_confidence() const { return settings_.confidence || settings_.min_confidence > 0; }
+
+  View(const DecodedScan& scan, const ReconstructSettings& settings, bool rows_of_profile);
 
   const DecodedScan* scan_;
   ReconstructSettings settings_;
