@@ -74,6 +74,21 @@ class DensityProfileTest(CommandTest):
         for row in (16, 18):  # given
             self.assertEqual(near_row(rare, row), near_row(plain, row))
 
+    def test_rows_measure_what_theirs_do_if_rows_are_asked_for(self):
+        def ranges(points, row):
+            return sorted(r for up, r in points if abs(up - (15 - row)) < 0.3)
+
+        self.write("far.toml", bias_mm=[200 if row == 21 else 0 for row in range(ROWS)])
+        # At jumps a row measures one of two surfaces, and nothing is added.
+        for rows, least, most in (2, 0.1, 0.21), (4, 0, 0):
+            plain = ranges(self.decode("plain.csv", "--rows", rows, "--no-masks"), 21)
+            far = ranges(self.decode("far.csv", "--rows", rows, "--no-masks", "--density-profile",
+                                     "far.toml"), 21)
+            self.assertEqual(len(far), len(plain))
+            self.assertGreater(len(far), 100)
+            by = sorted(b - a for a, b in zip(plain, far))[len(far) // 2]
+            self.assertTrue(least <= by <= most, by)
+
 
 if __name__ == "__main__":
     unittest.main()
