@@ -7,6 +7,7 @@
 
 #include "curlidar/reconstruct.hpp"
 #include "hostile/targets/chunks.hpp"
+#include "hostile/targets/made_from_fields.hpp"
 #include "support/chunks.hpp"
 
 namespace curlidar::test {
@@ -80,10 +81,12 @@ inline std::string check_decoded(ByteSpan file, const DecodeOptions& options) {
   (void)reconstruct(*scan, settings);
   settings.organised = false;
   settings.masks = true;
+  settings.strategy = DenseStrategy::best;
   settings.normals = settings.confidence = settings.keep_originals = true;
   (void)reconstruct(*scan, settings);
-  settings.keep_originals = false;
-  (void)reconstruct_mesh(*scan, settings);
+  for (const DenseStrategy strategy : {DenseStrategy::best, DenseStrategy::masks}) {
+    if (std::string wrong = check_everything_made(*scan, strategy); !wrong.empty()) return wrong;
+  }
   return "";
 }
 
