@@ -88,7 +88,7 @@ Status check_settings(const DecodedScan& scan, const ReconstructSettings& settin
 /// returns of the surface, those that name or count (ring, time, returns, labels, packed colours,
 /// 64-bit integers) are taken from the nearest. Compact files cut off or decoded in part give what
 /// is there; nothing there is an empty cloud. Errors: invalid_argument (check_settings, files
-/// without a field), limit_exceeded (max_points, counted before the work). About 1 us a point.
+/// without a field), limit_exceeded (max_points, counted before the work). 1 to 2.5 us a line.
 Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& settings = {},
                           const ProgressCallback& progress = {});
 
