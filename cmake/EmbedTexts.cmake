@@ -34,5 +34,7 @@ function(curlidar_embed target kind pattern)
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
     DEPENDS ${files} ${curlidar_embed_script}
     COMMENT "Embedding ${pattern}" VERBATIM)
+  # Texts may be longer than the 64 kB that every compiler must take; gcc and clang take them.
+  set_source_files_properties(${output} PROPERTIES COMPILE_OPTIONS -Wno-overlength-strings)
   target_sources(${target} PRIVATE ${output})
 endfunction()
