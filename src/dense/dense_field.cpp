@@ -128,14 +128,21 @@ RangeEstimate DenseField::estimate(const Sightline& line, bool confident) const 
   return estimate;
 }
 
+DenseField::Verdict DenseField::as_given(Verdict rules, double elevation,
+                                         const Found& found) const {
+  rules.guess.r += rows_->given_offset_m(elevation, {found.look, found.guess});
+  return rules;
+}
+
 DenseField::Verdict DenseField::judge(const Found& found) const {
   const Verdict rules{found.guess, 1, std::nullopt};
   if (!rows_ || !(found.guess.r > 0)) return rules;
   const PlaneLine& line = found.look.line;
   const double rho = line.from.rho + found.guess.r * line.along.rho;
   const double z = line.from.z + found.guess.r * line.along.z;
-  const auto near = rows_->row_near(std::atan2(z, rho), std::hypot(rho, z));
-  if (!near) return rules;
+  const double elevation = std::atan2(z, rho);
+  const auto near = rows_->row_near(elevation, std::hypot(rho, z));
+  if (!near) return rows_of_profile_ ? as_given(rules, elevation, found) : rules;
   const bool own = rows_of_profile_ && near->own;
   RowGuess judged{found.look, found.guess};
   rows_->judge(near->row, own ? RowSays::all : RowSays::returns, judged);

@@ -69,6 +69,8 @@ class DenseField final : public Field {
   /// Along a line of the cloud's frame, of unit length.
   Found find(const Sightline& line) const;
   Verdict judge(const Found& found) const;
+  /// What a given row measures where the rules say so, if the line at this elevation is its.
+  Verdict as_given(Verdict rules, double elevation, const Found& found) const;
   PlainFeatures features(const Found& found) const;
   /// Those of a row of the profile, which has rows.
   RowFeatures features(const Found& found, std::size_t row) const;

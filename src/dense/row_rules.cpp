@@ -14,6 +14,7 @@ namespace curlidar {
 namespace {
 
 constexpr double kSomewhere_m = 20;  ///< where a row is looked for before anything is found
+constexpr double kOwn = 0.25;        ///< of the step to the next row: lines of the row itself
 
 /// Rings may look so much beside what a profile says even if rows lie closely.
 constexpr double kSomeAngle = 1e-3;
@@ -166,8 +167,7 @@ double RowRules::returns_by_tables(std::size_t row, const RowGuess& found) const
                                    : 0.5 + 0.5 * (occupied - kLeastOccupied) / (1 - kLeastOccupied);
 }
 
-std::optional<NearRow> RowRules::row_near(double elevation, double range_m) const {
-  constexpr double kOwn = 0.25, kNear = 0.5;  // of the step to the next row
+RowRules::Nearest RowRules::nearest_to(double elevation, double range_m) const {
   const auto above_row = [&](std::size_t row) {
     return elevation - profile_.elevation(row, range_m);
   };
@@ -175,14 +175,26 @@ std::optional<NearRow> RowRules::row_near(double elevation, double range_m) cons
   for (std::size_t row = 1; row < profile_.rows; ++row) {
     if (std::abs(above_row(row)) < std::abs(above_row(nearest))) nearest = row;
   }
-  if (profile_.is_given(nearest)) return std::nullopt;
   const double away = above_row(nearest);
+  if (profile_.rows < 2) return {nearest, 0};
   // The row on that side; beyond the outermost ones the step is as on the other side.
   const bool up = nearest + 1 >= profile_.rows || (away > 0 && nearest > 0);
   const std::size_t other = up ? nearest - 1 : nearest + 1;
   const double step = std::abs(above_row(other) - away);
-  if (std::abs(away) > kNear * step) return std::nullopt;
-  return NearRow{nearest, std::abs(away) <= kOwn * step};
+  return {nearest, away == 0 ? 0 : std::abs(away) / step};
+}
+
+std::optional<NearRow> RowRules::row_near(double elevation, double range_m) const {
+  constexpr double kNear = 0.5;
+  const Nearest nearest = nearest_to(elevation, range_m);
+  if (profile_.is_given(nearest.row) || !(nearest.away <= kNear)) return std::nullopt;
+  return NearRow{nearest.row, nearest.away <= kOwn};
+}
+
+double RowRules::given_offset_m(double elevation, const RowGuess& found) const {
+  const Nearest nearest = nearest_to(elevation, found.guess.r);
+  const bool given = profile_.is_given(nearest.row) && nearest.away <= kOwn;
+  return given && on_one_surface(found.guess) ? raw_offset_m(found) : 0;
 }
 
 }  // namespace curlidar

@@ -65,8 +65,17 @@ class RowRules {
   /// whether it does within a quarter of the step to the next one on that side; nothing if that is
   /// a given row, or half a step beyond the outermost.
   std::optional<NearRow> row_near(double elevation, double range_m) const;
+  /// What a given row measures too far where the rules say `found` at this elevation (from the
+  /// origin), metres; 0 on lines that are not those of a given row.
+  double given_offset_m(double elevation, const RowGuess& found) const;
 
  private:
+  /// The row nearest in elevation, given or not.
+  struct Nearest {
+    std::size_t row = 0;
+    double away = 0;  ///< in steps to the next row on that side
+  };
+  Nearest nearest_to(double elevation, double range_m) const;
   /// What must be added to a range so that it is as if interpolated between raw returns.
   double raw_offset_m(const RowGuess& found) const;
   double returns_by_tables(std::size_t row, const RowGuess& found) const;

@@ -17,15 +17,17 @@
 
 namespace curlidar::test {
 
-/// Rings at 4, 0 and -4 degrees in a round tower that is open to one side.
-inline std::shared_ptr<const Field> tower_field() {
+/// Rings at 4, 0 and -4 degrees in a round tower that is open to one side; they measure `offset_m`
+/// too far.
+inline std::shared_ptr<const Field> tower_field(double offset_m = 0) {
   constexpr double kDegree = std::numbers::pi / 180, kWall_m = 10;
   const World tower = [](const Vec3&, const Vec3& direction) {
     const double flat = std::hypot(direction.x, direction.y);
     return direction.x < -0.9 * flat ? std::numeric_limits<double>::quiet_NaN() : kWall_m / flat;
   };
   return std::make_shared<const RingField>(
-      std::vector<TestRing>{{4 * kDegree, 0, 0}, {0, 0, 0}, {-4 * kDegree, 0, 0}}, 360, tower);
+      std::vector<TestRing>{{4 * kDegree, 0, 0}, {0, 0, 0}, {-4 * kDegree, 0, 0}}, 360, tower,
+      offset_m);
 }
 
 /// Rows at 4, 3, .. -4 degrees, of which 0, 4 and 8 are the field's rings, that always return.

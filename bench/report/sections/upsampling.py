@@ -54,7 +54,8 @@ def scores_of(context, scan):
     command = [context.bin / "report_measure", "upsampling", scan.path]
     for option, profile in (
             ("--profile", profiles.without_drive(context, scan, "image", *profiles.IMAGE)),
-            ("--rings-profile", profiles.rings_without(context, scan, EVERY))):
+            ("--rings-profile", profiles.without_drive(context, scan, "rings", "--every",
+                                                       str(EVERY), *profiles.RINGS))):
         command += [option, profile] if profile else []
     lines = context.measure("upsampling", {"input": scan.name, "part": "protocol"}, command)
     return [line for line in lines if "method" in line]

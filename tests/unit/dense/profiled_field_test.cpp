@@ -83,6 +83,21 @@ TEST(ProfiledField, BiasesAreOfLinesThatNameARow) {
   }
 }
 
+TEST(ProfiledField, GivenRowsMeasureWhatTheirRingsDo) {
+  const auto profile = std::make_shared<DensityProfile>(tower_profile());
+  const auto far = [&](bool rows_of_profile, double up) {
+    const auto field =
+        dense_field(test::tower_field(.04), {DenseStrategy::best, profile, rows_of_profile});
+    return test::told_along(*field, {{{}, direction_of(up * kDegree, 0.3)}})[0].range_m -
+           told_by_rules(up).range_m;
+  };
+  for (const double up : {4.0, 3.8, 0.1, -3.9}) {
+    EXPECT_NEAR(far(true, up), .04, 1e-9) << up;
+    EXPECT_EQ(far(false, up), 0) << up;
+  }
+  EXPECT_EQ(far(true, 0.4), 0);  // between rows
+}
+
 TEST(ProfiledField, RowsThatHardlyReturnDoSoForAllWhoAskThere) {
   DensityProfile profile = tower_profile();
   profile.return_permille.row(2).fill(100);
