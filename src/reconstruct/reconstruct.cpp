@@ -29,6 +29,7 @@ bool has_rows_of_profile(const ReconstructSettings& settings) {
 
 Result<Cloud> plain_cloud(const DecodedScan& scan, const ReconstructSettings& settings) {
   CURLIDAR_TRY(check_bounds(settings));
+  if (settings.organised) CURLIDAR_TRY(check_lattice(scan));
   Cloud coded = coded_cloud(scan, settings.organised, settings.threads);
   CURLIDAR_TRY(check_points(1, coded.size(), "a cloud", settings));
   mark_coded(settings, coded);

@@ -62,6 +62,13 @@ Status check_bounds(const ReconstructSettings& settings) {
   return {};
 }
 
+Status check_lattice(const DecodedScan& scan) {
+  if (!scan.records || scan.records->lattice != RecordLattice::none) return {};
+  return Error{ErrorCode::invalid_argument,
+               "the file holds its points one after the other, without a field: it gives them as "
+               "they are, without other rows, columns or a grid"};
+}
+
 Status check_settings(const DecodedScan& scan, const ReconstructSettings& settings) {
   CURLIDAR_TRY(check_bounds(settings));
   const DenseStrategy strategy = settings.strategy.value_or(usual_strategy(scan));
@@ -107,11 +114,7 @@ View::View(const DecodedScan& scan, const ReconstructSettings& settings, bool ro
 Result<View> View::make(const DecodedScan& scan, const ReconstructSettings& settings,
                         bool rows_of_profile) {
   CURLIDAR_TRY(check_settings(scan, settings));
-  if (scan.records && scan.records->lattice == RecordLattice::none) {
-    return Error{ErrorCode::invalid_argument,
-                 "the file holds its points one after the other, without a field: it gives them as "
-                 "they are, without other rows, columns or a grid"};
-  }
+  CURLIDAR_TRY(check_lattice(scan));
   return View(scan, settings, rows_of_profile);
 }
 

@@ -91,6 +91,8 @@ void in_batches(std::size_t count, std::size_t batch, const ProgressCallback& pr
 
 /// Invalid_argument for factors and confidences that lie nowhere.
 Status check_bounds(const ReconstructSettings& settings);
+/// Files that hold points one after the other have neither a field nor a lattice: invalid_argument.
+Status check_lattice(const DecodedScan& scan);
 
 /// Limit_exceeded for more points than the settings allow; `what` makes them beside those kept.
 Status check_points(std::uint64_t rows, std::uint64_t columns, const char* what,

@@ -112,7 +112,7 @@ TEST(CompactField, EmptyCellsHoldNothingButWithoutMasksEveryDirectionDoes) {
   EXPECT_TRUE(std::isnan(range_at(field, 5.5, 39.6)));
   EXPECT_NEAR(range_at(field, 5.5, 50.25, false), 8, 0.6);
   EXPECT_NEAR(range_at(field, -0.5, 200.5, false), 8, 0.6);
-  const Cloud all = reconstruct(scan, {.masks = false}).value();
+  const Cloud all = reconstruct(scan, {.masks = false, .strategy = DenseStrategy::masks}).value();
   EXPECT_EQ(all.size(), field.lattice().cells());
 }
 
