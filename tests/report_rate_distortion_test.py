@@ -2,19 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The report's section on rate and distortion: what it reads from measured lines, matched errors,
 peers that are missing or stored."""
-import sys
-import tomllib
 import unittest
 from pathlib import Path
 from unittest import mock
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT / "bench/report"), str(ROOT / "bench")]
-from common import curves  # noqa: E402
-from frame.cells import Missing, Published  # noqa: E402
-from frame.scans import Scan, Scene  # noqa: E402
-from sections import rate_distortion as section  # noqa: E402
-from sections import rate_distortion_curves  # noqa: E402
+from report_support import FakeContext
+from common import curves
+from frame.cells import Missing
+from frame.scans import Scan
+from sections import rate_distortion as section
+from sections import rate_distortion_curves
 
 REFERENCE = Scan("kitti_raw/curl_example/0.pcd", Path("0.pcd"), "HDL-64E")
 OTHER = Scan("kitti_raw/other.pcd", Path("other.pcd"), "HDL-64E")
@@ -29,31 +26,16 @@ def line(codec, error_m, size, **more):
             "decode_ms": 1., **more}
 
 
-class FakeContext:
-    """Answers with lines instead of running anything."""
+class Context(FakeContext):
+    """Remembers what was asked with its key."""
 
     def __init__(self, lines, quick=True, scan=REFERENCE):
-        self.quick, self.lines = quick, lines
-        self.scans, self.scenes = [scan], [Scene("room", "os1-64-gen1", "indoor")]
-        self.curlidar, self.bin = Path("curlidar"), Path("bin")
-        text = (ROOT / "bench/report/published.toml").read_text(encoding="utf-8")
-        self.published, self.asked = tomllib.loads(text), []
-
-    @property
-    def inputs(self):
-        return [*self.scans, *self.scenes]
-
-    def cloud(self, item):
-        return Path(item.id)
-
-    def published_rows(self, table, **wanted):
-        return [{key: Published(value, row["source"]) if isinstance(value, (int, float)) else value
-                 for key, value in row.items()} for row in self.published[table]
-                if all(row.get(key) == value for key, value in wanted.items())]
+        super().__init__(lines, scans=[scan], quick=quick)
+        self.curlidar = Path("curlidar")
 
     def measure(self, _section, key, command):
         self.asked.append((key, command))
-        return self.lines(key)
+        return self.answer(key)
 
 
 def answers(key):
@@ -94,7 +76,7 @@ class CurvesTest(unittest.TestCase):
 @mock.patch("shutil.which", absent)
 class SectionTest(unittest.TestCase):
     def table(self, scan=REFERENCE):
-        return section.raw_table(FakeContext(answers, scan=scan), scan)
+        return section.raw_table(Context(answers, scan=scan), scan)
 
     def row(self, title, scan=REFERENCE):
         return next(row for row in self.table(scan).rows if row["codec"] == title)
@@ -123,11 +105,11 @@ class SectionTest(unittest.TestCase):
         self.assertEqual(self.row("G-PCC", OTHER)["at_5mm"], "tmc3 is not on the PATH")
 
     def stored_source(self, key):
-        return FakeContext(answers).published["sources"][key]
+        return Context(answers).published["sources"][key]
 
     def test_programs_on_the_path_are_measured_and_not_shown_as_stored(self):
         with mock.patch("shutil.which", lambda tool: f"/bin/{tool}" if tool == "tmc3" else None):
-            context = FakeContext(answers)
+            context = Context(answers)
             rows = section.raw_table(context, REFERENCE).rows
         asked = [key["codec"] for key, _ in context.asked]
         self.assertEqual([codec for codec in asked if codec.startswith("gpcc")],
@@ -137,14 +119,14 @@ class SectionTest(unittest.TestCase):
         self.assertFalse([codec for codec in stored if "G-PCC" in codec], stored)
 
     def test_best_peer_may_be_a_stored_one(self):
-        rows = {row["error"]: row for row in section.summary_rows(FakeContext(answers))
+        rows = {row["error"]: row for row in section.summary_rows(Context(answers))
                 if row["input"] == REFERENCE.name}
         self.assertEqual(rows["5 mm"]["peer"], "G-PCC predictive, angular, lossy (stored)")
         self.assertAlmostEqual(rows["5 mm"]["share"], 100 * 3 / 4.92, delta=.5)
         self.assertEqual(rows["5 cm"]["best"].value, 1.60)
 
     def test_every_table_is_complete_when_nothing_could_be_measured(self):
-        context = FakeContext(lambda key: [{"failure": "the program is broken"}], quick=False)
+        context = Context(lambda key: [{"failure": "the program is broken"}], quick=False)
         for table in section.tables(context):  # Table refuses empty cells
             self.assertTrue(table.rows)
         row = next(row for row in section.raw_table(context, OTHER).rows
@@ -152,7 +134,7 @@ class SectionTest(unittest.TestCase):
         self.assertEqual(row["at_20mm"], "the program is broken")
 
     def test_check_finds_lost_returns_and_errors_beyond_the_target(self):
-        self.assertEqual(list(section.check(FakeContext(answers), [])), [])
+        self.assertEqual(list(section.check(Context(answers), [])), [])
 
         def wrong(key):
             lines = answers(key)
@@ -160,7 +142,7 @@ class SectionTest(unittest.TestCase):
                 lines[0].update(points_back=RETURNS - 1, bytes=5000, **{
                     "nearest_to_raw": {"mean": .021, "rms": .03, "p95": .04, "max": 1.}})
             return lines
-        said = " / ".join(section.check(FakeContext(wrong), []))
+        said = " / ".join(section.check(Context(wrong), []))
         for part in ("999 of 1000", "is off by 0.021", "needs more bits"):
             self.assertIn(part, said)
 

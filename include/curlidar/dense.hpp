@@ -44,14 +44,14 @@ struct DenseSettings {
 };
 
 /// The field of a decoded scan made to be asked anywhere. Every member tells of one and the same
-/// surface: evaluate_row at a row and column says what range_along says along that line (only where
-/// nothing can be guessed at all, and no masks are wanted, it says what the field says). Through
-/// the coded returns it passes as the sensor saw them: without what their rings measure too far,
-/// and moved by up to half a step of the coding where patches of one surface are made to meet.
-/// Between them a surface is interpolated from the returns of the two rings that are above and
-/// below as seen from where the line of sight starts, planes exactly; where the two rings saw
-/// different surfaces one of them is chosen, never a place between; where neither saw any, there is
-/// nothing. O(cells) to make; 0.4 us a place on a row, 2 to 4 us any line with its confidence.
+/// surface: evaluate_row at a row and column says what range_along says along that line, and NaN
+/// where nothing can be guessed, with masks or without. Through the coded returns it passes as the
+/// sensor saw them: without what their rings measure too far, and moved by up to half a step of the
+/// coding where patches of one surface are made to meet. Between them a surface is interpolated
+/// from the returns of the two rings that are above and below as seen from where the line of sight
+/// starts, planes exactly; where the two rings saw different surfaces one of them is chosen, never
+/// a place between; where neither saw any, there is nothing. A scan without returns says what
+/// `field` says. O(cells) to make; 0.4 us a place on a row, 2 to 4 us any line with its confidence.
 std::shared_ptr<const Field> dense_field(std::shared_ptr<const Field> field,
                                          const DenseSettings& settings = {});
 

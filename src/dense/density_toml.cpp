@@ -11,15 +11,8 @@
 
 #include "base/try.hpp"
 #include "dense/density_profile.hpp"
+#include "sensor/tomlpp.hpp"
 #include "sensor/utf8.hpp"
-
-// As in sensor/toml.cpp: what toml++ 3.3 asserts has an ordinary error behind it.
-#pragma push_macro("NDEBUG")
-#undef NDEBUG
-#define TOML_ASSERT(condition) static_cast<void>(0)
-#define TOML_EXCEPTIONS 0
-#include <toml++/toml.h>
-#pragma pop_macro("NDEBUG")
 
 namespace curlidar {
 namespace {

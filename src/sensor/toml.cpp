@@ -10,16 +10,8 @@
 #include "base/try.hpp"
 #include "curlidar/sensor.hpp"
 #include "sensor/angles.hpp"
+#include "sensor/tomlpp.hpp"
 #include "sensor/utf8.hpp"
-
-// toml++ 3.3 asserts some things that files may break ("[=]"), and in release builds tells the
-// compiler to rely on them; each has an ordinary error behind it, which this leaves in force.
-#pragma push_macro("NDEBUG")
-#undef NDEBUG
-#define TOML_ASSERT(condition) static_cast<void>(0)
-#define TOML_EXCEPTIONS 0
-#include <toml++/toml.h>
-#pragma pop_macro("NDEBUG")
 
 namespace curlidar {
 namespace {
