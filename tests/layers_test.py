@@ -33,6 +33,10 @@ SOURCE_FOLDERS = ["include", "src", "apps", "examples", "tests", "bench", "fuzz"
 MAX_LINES = 600
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 
+SHARED_NAME = re.compile(r"(?:struct|class|enum class|enum) (\w+)(?!::)\b[^;]*\{"
+                         r"|inline constexpr [\w:<>, ]+? (\w+)(?:\[|\{| =|;)"
+                         r"|(?:inline|constexpr) .*? (\w+)\(")
+
 
 def source_files(*folders):
     files = [file for folder in folders for file in sorted((ROOT / folder).rglob("*"))
@@ -62,6 +66,20 @@ def may_include(layer, other):
     if layer in BESIDE:
         return other in SEEN_BESIDE
     return other in LAYERS and LAYERS.index(other) < LAYERS.index(layer)
+
+
+def shared_names(file):
+    """Types, constants and inline functions of a file that the linker takes for those of another
+    file with the same name and namespace: all but those of unnamed namespaces."""
+    spaces, names = [], set()
+    for line in file.read_text(encoding="utf-8").splitlines():
+        if opened := re.match(r"namespace(?: ([\w:]+))? \{", line):
+            spaces.append(opened[1])
+        elif line.startswith("}  // namespace"):
+            spaces.pop()
+        elif None not in spaces and (named := SHARED_NAME.match(line)):
+            names.add("::".join([*spaces, next(filter(None, named.groups()))]))
+    return names
 
 
 class LayersTest(unittest.TestCase):
@@ -107,6 +125,17 @@ class LayersTest(unittest.TestCase):
                  for file in source_files("apps") for _, path in includes(file)
                  if not path.startswith("curlidar/") and layer_of_include(path) is not None]
         self.assertEqual(wrong, [])
+
+    def test_one_name_is_one_thing(self):
+        # Two definitions of one name, and the linker keeps either of them: what breaks depends on
+        # what the compiler has inlined.
+        where = {}
+        for file in [*source_files("include", "src"), *source_files("apps")]:
+            for name in shared_names(file):
+                where.setdefault(name, []).append(str(file.relative_to(ROOT)))
+        twice = {name: files for name, files in where.items() if len(files) > 1}
+        self.assertGreater(len(where), 100)
+        self.assertEqual(twice, {})
 
     def test_files_stay_small(self):
         long = [f"{file.relative_to(ROOT)}: {lines} lines" for file in source_files(*SOURCE_FOLDERS)

@@ -57,7 +57,7 @@ void add_candidates(const Quad& quad, const Sphere& sphere, const Division& divi
 }
 
 /// Adds those candidates that the field confirms.
-void add_points(const View& view, const Quad& quad, std::span<const Candidate> candidates,
+void add_points(const ScanView& view, const Quad& quad, std::span<const Candidate> candidates,
                 Samples& samples) {
   std::vector<Sightline> lines;
   for (const Candidate& candidate : candidates) lines.push_back(candidate.line);
@@ -86,8 +86,8 @@ std::optional<Division> division_of(const Quad& quad, const Sphere& sphere, doub
   return Division{static_cast<std::uint32_t>(down), static_cast<std::uint32_t>(right), density};
 }
 
-void sample_quad(const View& view, const Sphere& sphere, const Quad& quad, const Division& division,
-                 Samples& samples) {
+void sample_quad(const ScanView& view, const Sphere& sphere, const Quad& quad,
+                 const Division& division, Samples& samples) {
   constexpr std::size_t kAtOnce = 4096;
   std::vector<Candidate> candidates;
   for (std::uint32_t u = 0; u < division.down; ++u) {

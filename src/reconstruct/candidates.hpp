@@ -21,7 +21,7 @@ struct Division {
 std::optional<Division> division_of(const Quad& quad, const Sphere& sphere, double density);
 
 /// Adds the points of a quad that the field confirms.
-void sample_quad(const View& view, const Sphere& sphere, const Quad& quad, const Division& division,
-                 Samples& samples);
+void sample_quad(const ScanView& view, const Sphere& sphere, const Quad& quad,
+                 const Division& division, Samples& samples);
 
 }  // namespace curlidar

@@ -19,7 +19,7 @@ std::vector<Vec3> points_of_cells(const DecodedScan& scan,
                                   const std::vector<std::uint32_t>& numbers, std::size_t threads) {
   const Field& field = *scan.field;
   const std::size_t width = field.lattice().columns();
-  std::vector<Vec3> points(numbers.size(), kNoPoint);
+  std::vector<Vec3> points(numbers.size(), kNowherePoint);
   if (!scan.points.empty()) {
     for (std::size_t cell = 0; cell < points.size(); ++cell) {
       if (numbers[cell] < scan.points.size()) points[cell] = scan.points[numbers[cell]];

@@ -58,7 +58,7 @@ Status check_wish(const Wish& wish, std::size_t kept, const ReconstructSettings&
 }
 
 /// Stops soon after there are more than `most`, which are too many.
-Samples sample_surfaces(const View& view, const Wish& wish, const TakenPlaces* taken,
+Samples sample_surfaces(const ScanView& view, const Wish& wish, const TakenPlaces* taken,
                         std::uint64_t most, const ProgressCallback& progress) {
   constexpr std::size_t kBatch = 8;
   Samples all;
@@ -72,7 +72,7 @@ Samples sample_surfaces(const View& view, const Wish& wish, const TakenPlaces* t
         if (division) sample_quad(view, wish.sphere, quad, *division, rows[k]);
       }
       for (Vec3& point : rows[k].points) {
-        if (taken != nullptr && taken->near(point)) point = kNoPoint;
+        if (taken != nullptr && taken->near(point)) point = kNowherePoint;
       }
       rows[k].drop_empty();
     });
@@ -93,7 +93,7 @@ Result<Cloud> reconstruct_density(const DecodedScan& scan, double points_per_m2,
                              points_per_m2, kLeastDensity, kMostDensity)};
   }
   CURLIDAR_TRY(check_kept(settings));
-  CURLIDAR_TRY_ASSIGN(view, View::make(scan, settings));
+  CURLIDAR_TRY_ASSIGN(view, ScanView::make(scan, settings));
   Cloud coded = coded_returns(scan, settings.threads);
   const Sphere sphere = sphere_of(coded.positions);
   const CornerPlanes planes(view, sphere, progress);

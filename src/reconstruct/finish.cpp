@@ -20,7 +20,7 @@ void set_attribute(Cloud& cloud, const char* name, std::vector<T> values) {
 
 }  // namespace
 
-void add_normals(const View& view, Cloud& cloud) {
+void add_normals(const ScanView& view, Cloud& cloud) {
   const std::vector<Vec3> normals = normals_at(view, cloud.positions, view.settings().threads);
   std::vector<float> x, y, z;
   for (const Vec3& normal : normals) {
@@ -44,7 +44,7 @@ void mark_coded(const ReconstructSettings& settings, Cloud& coded) {
   if (settings.original) set_attribute(coded, "original", std::move(original));
 }
 
-Cloud finish(const View& view, Samples samples) {
+Cloud finish(const ScanView& view, Samples samples) {
   const ReconstructSettings& settings = view.settings();
   Cloud cloud;
   cloud.metadata = view.scan().metadata;
@@ -61,7 +61,7 @@ Cloud finish(const View& view, Samples samples) {
   return cloud;
 }
 
-Cloud finish_behind(const View& view, Cloud coded, Samples samples) {
+Cloud finish_behind(const ScanView& view, Cloud coded, Samples samples) {
   mark_coded(view.settings(), coded);
   if (view.settings().normals) add_normals(view, coded);
   return behind(std::move(coded), finish(view, std::move(samples)));

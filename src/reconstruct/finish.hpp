@@ -9,13 +9,13 @@ namespace curlidar {
 /// Attributes of coded returns: they are sure, and originals.
 void mark_coded(const ReconstructSettings& settings, Cloud& coded);
 /// Attributes normal_x, normal_y, normal_z.
-void add_normals(const View& view, Cloud& cloud);
+void add_normals(const ScanView& view, Cloud& cloud);
 
 /// The cloud of invented points with the scan's attributes and what the settings ask for.
-Cloud finish(const View& view, Samples samples);
+Cloud finish(const ScanView& view, Samples samples);
 
 /// Invented points behind the coded returns, with what the settings ask for.
-Cloud finish_behind(const View& view, Cloud coded, Samples samples);
+Cloud finish_behind(const ScanView& view, Cloud coded, Samples samples);
 
 /// Invalid_argument if originals are to be kept where they have no place.
 Status check_kept(const ReconstructSettings& settings);

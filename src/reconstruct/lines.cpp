@@ -50,7 +50,7 @@ bool in_range(const SensorProfile& sensor, const Sightline& line, const Vec3& po
 }
 
 /// What one ring of a virtual sensor sees.
-Samples look_around(const View& view, const SensorProfile& sensor, std::size_t ring) {
+Samples look_around(const ScanView& view, const SensorProfile& sensor, std::size_t ring) {
   std::vector<Sightline> lines;
   for (std::uint32_t column = 0; column < sensor.columns; ++column) {
     lines.push_back(beam(sensor, ring, column));
@@ -61,7 +61,7 @@ Samples look_around(const View& view, const SensorProfile& sensor, std::size_t r
   view.look(lines, samples.points, samples.confidence, view.settings().threads);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     // NaN is out of range, too.
-    if (!in_range(sensor, lines[i], samples.points[i])) samples.points[i] = kNoPoint;
+    if (!in_range(sensor, lines[i], samples.points[i])) samples.points[i] = kNowherePoint;
   }
   return samples;
 }
@@ -75,7 +75,7 @@ Result<Cloud> reconstruct_directions(const DecodedScan& scan, std::span<const Ve
   CURLIDAR_TRY(check_alone(settings, "given directions"));
   CURLIDAR_TRY(check_directions(directions));
   CURLIDAR_TRY(check_points(1, directions.size(), "directions", settings));
-  CURLIDAR_TRY_ASSIGN(view, View::make(scan, settings));
+  CURLIDAR_TRY_ASSIGN(view, ScanView::make(scan, settings));
   Samples samples;
   samples.resize(directions.size());
   samples.width = static_cast<std::uint32_t>(directions.size());
@@ -99,7 +99,7 @@ Result<Cloud> reconstruct_sensor(const DecodedScan& scan, const SensorProfile& s
                              sensor.name)};
   }
   CURLIDAR_TRY(check_points(sensor.rings.size(), sensor.columns, "a sensor", settings));
-  CURLIDAR_TRY_ASSIGN(view, View::make(scan, settings, true));
+  CURLIDAR_TRY_ASSIGN(view, ScanView::make(scan, settings, true));
   Samples samples;
   in_batches(sensor.rings.size(), 1, progress, [&](std::size_t ring, std::size_t) {
     samples.append(look_around(view, sensor, ring));

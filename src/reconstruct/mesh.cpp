@@ -23,7 +23,7 @@ constexpr std::uint64_t kFewestColumns = 8;
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 
 /// A row of the grid at its columns and half way to the next ones: 2 * columns points.
-std::vector<Vec3> fine_row(const View& view, const DenseGrid& grid, double row) {
+std::vector<Vec3> fine_row(const ScanView& view, const DenseGrid& grid, double row) {
   std::vector<double> columns(2 * grid.columns);
   for (std::size_t j = 0; j < columns.size(); ++j) {
     columns[j] = static_cast<double>(j) * grid.column_step / 2;
@@ -79,7 +79,7 @@ void add_triangles(const Quad& quad, std::vector<Triangle>& triangles) {
 }
 
 /// All triangles of a grid, with the points of the grid as vertices.
-std::vector<Triangle> triangulate(const View& view, const DenseGrid& grid,
+std::vector<Triangle> triangulate(const ScanView& view, const DenseGrid& grid,
                                   const std::vector<std::vector<Vec3>>& rows,
                                   const ProgressCallback& progress) {
   constexpr std::size_t kBatch = 64;
@@ -138,7 +138,7 @@ std::vector<Vec3> vertex_normals(const SurfaceMesh& mesh) {
   }
   for (Vec3& normal : normals) {
     const double length = norm(normal);
-    normal = length > 0 ? normal * (1 / length) : kNoPoint;
+    normal = length > 0 ? normal * (1 / length) : kNowherePoint;
   }
   return normals;
 }
@@ -147,7 +147,7 @@ std::vector<Vec3> vertex_normals(const SurfaceMesh& mesh) {
 
 Result<SurfaceMesh> reconstruct_mesh(const DecodedScan& scan, const ReconstructSettings& settings,
                                      const ProgressCallback& progress) {
-  CURLIDAR_TRY_ASSIGN(view, View::make(scan, settings));
+  CURLIDAR_TRY_ASSIGN(view, ScanView::make(scan, settings));
   const DenseGrid grid(view.field().lattice(), settings.rows, settings.columns);
   CURLIDAR_TRY(check_points(grid.rows, grid.columns, "a grid", settings));
   if (grid.rows * grid.columns >= kUnused) {

@@ -34,7 +34,7 @@ struct Axis {
   std::size_t point = 0;  ///< its number
   Vec3 step;              ///< to the farther neighbours, added to the direction
   Vec3 before, behind;    ///< the farther neighbours
-  Vec3 tangent = kNoPoint;
+  Vec3 tangent = kNowherePoint;
 };
 
 /// The axes of all points that are returns, two of each.
@@ -53,7 +53,7 @@ std::vector<Axis> axes_of(std::span<const Vec3> points, std::size_t begin, std::
 }
 
 /// Looks at both sides of the points, a share of the step away: two points for each axis.
-std::vector<Vec3> look_beside(const View& view, std::span<const Vec3> points,
+std::vector<Vec3> look_beside(const ScanView& view, std::span<const Vec3> points,
                               std::span<const Axis> axes, double share) {
   std::vector<Sightline> lines(2 * axes.size());
   for (std::size_t k = 0; k < axes.size(); ++k) {
@@ -70,7 +70,7 @@ std::vector<Vec3> look_beside(const View& view, std::span<const Vec3> points,
 
 /// Where a point is not on the straight line between its farther neighbours, the nearer ones tell
 /// on which side its surface goes on.
-void look_closer(const View& view, std::span<const Vec3> points, std::vector<Axis>& axes) {
+void look_closer(const ScanView& view, std::span<const Vec3> points, std::vector<Axis>& axes) {
   std::vector<Axis> open;
   std::copy_if(axes.begin(), axes.end(), std::back_inserter(open),
                [](const Axis& axis) { return std::isnan(axis.tangent.x); });
@@ -93,15 +93,16 @@ void look_closer(const View& view, std::span<const Vec3> points, std::vector<Axi
 Vec3 normal_of(const Vec3& point, const Vec3& left, const Vec3& up) {
   const Vec3 normal = cross(left, up);
   const double length = norm(normal);
-  if (!(length > 0)) return kNoPoint;
+  if (!(length > 0)) return kNowherePoint;
   return normal * ((dot(normal, point) > 0 ? -1 : 1) / length);
 }
 
 }  // namespace
 
-std::vector<Vec3> normals_at(const View& view, std::span<const Vec3> points, std::size_t threads) {
+std::vector<Vec3> normals_at(const ScanView& view, std::span<const Vec3> points,
+                             std::size_t threads) {
   constexpr std::size_t kChunk = 512;
-  std::vector<Vec3> normals(points.size(), kNoPoint);
+  std::vector<Vec3> normals(points.size(), kNowherePoint);
   parallel_for((points.size() + kChunk - 1) / kChunk, threads, [&](std::size_t chunk) {
     const std::size_t begin = chunk * kChunk, end = std::min(points.size(), begin + kChunk);
     std::vector<Axis> axes = axes_of(points, begin, end);

@@ -14,7 +14,7 @@ constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kQuadAngle = 0.45 * std::numbers::pi / 180;
 
 /// The planes at one row of corners.
-std::vector<Plane> planes_of_row(const View& view, const Sphere& sphere, std::size_t row) {
+std::vector<Plane> planes_of_row(const ScanView& view, const Sphere& sphere, std::size_t row) {
   std::vector<Sightline> lines(sphere.columns);
   for (std::size_t j = 0; j < lines.size(); ++j) {
     lines[j].direction = sphere.direction(static_cast<double>(row), static_cast<double>(j));
@@ -101,7 +101,8 @@ std::array<double, 2> lengths_of(const Quad& quad, const Sphere& sphere) {
   return {height, width};
 }
 
-CornerPlanes::CornerPlanes(const View& view, const Sphere& sphere, const ProgressCallback& progress)
+CornerPlanes::CornerPlanes(const ScanView& view, const Sphere& sphere,
+                           const ProgressCallback& progress)
     : rows_(sphere.rows == 0 ? 0 : sphere.rows + 1) {
   constexpr std::size_t kBatch = 8;
   in_batches(rows_.size(), kBatch, progress, [&](std::size_t begin, std::size_t end) {

@@ -68,7 +68,7 @@ std::array<double, 2> lengths_of(const Quad& quad, const Sphere& sphere);
 class CornerPlanes {
  public:
   /// O(quads) evaluations; threads change nothing.
-  CornerPlanes(const View& view, const Sphere& sphere, const ProgressCallback& progress);
+  CornerPlanes(const ScanView& view, const Sphere& sphere, const ProgressCallback& progress);
 
   Quad quad(std::size_t row, std::size_t column) const;
   /// Surface in all, about.

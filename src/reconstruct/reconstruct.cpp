@@ -39,7 +39,7 @@ Result<Cloud> plain_cloud(const DecodedScan& scan, const ReconstructSettings& se
   surfaces.min_confidence = 0;
   surfaces.confidence = false;
   surfaces.density_profile = nullptr;
-  CURLIDAR_TRY_ASSIGN(view, View::make(scan, surfaces));
+  CURLIDAR_TRY_ASSIGN(view, ScanView::make(scan, surfaces));
   add_normals(view, coded);
   return coded;
 }
@@ -52,7 +52,7 @@ double half_row(const Lattice& lattice, const DenseGrid& grid, std::size_t i) {
 }
 
 /// Samples the grid; rows in which returns are taken lose their doubles.
-Samples sample_grid(const View& view, const DenseGrid& grid, const TakenDirections* taken,
+Samples sample_grid(const ScanView& view, const DenseGrid& grid, const TakenDirections* taken,
                     const ProgressCallback& progress) {
   constexpr std::size_t kBatch = 64;
   const ReconstructSettings& settings = view.settings();
@@ -68,7 +68,7 @@ Samples sample_grid(const View& view, const DenseGrid& grid, const TakenDirectio
       const double half_height = half_row(view.field().lattice(), grid, i);
       for (Vec3& point : lines[k].points) {
         if (taken != nullptr && !std::isnan(point.x) && taken->near(point, half_height)) {
-          point = kNoPoint;
+          point = kNowherePoint;
         }
       }
       if (!settings.organised) lines[k].drop_empty();
@@ -86,7 +86,7 @@ Result<Cloud> reconstruct(const DecodedScan& scan, const ReconstructSettings& se
                           const ProgressCallback& progress) {
   CURLIDAR_TRY(check_kept(settings));
   if (is_plain(settings)) return plain_cloud(scan, settings);
-  CURLIDAR_TRY_ASSIGN(view, View::make(scan, settings, has_rows_of_profile(settings)));
+  CURLIDAR_TRY_ASSIGN(view, ScanView::make(scan, settings, has_rows_of_profile(settings)));
   const DenseGrid grid(view.field().lattice(), settings.rows, settings.columns);
   if (!settings.keep_originals) {
     CURLIDAR_TRY(check_points(grid.rows, grid.columns, "a grid", settings));

@@ -98,7 +98,8 @@ void Samples::drop_empty() {
   height = 1;
 }
 
-View::View(const DecodedScan& scan, const ReconstructSettings& settings, bool rows_of_profile)
+ScanView::ScanView(const DecodedScan& scan, const ReconstructSettings& settings,
+                   bool rows_of_profile)
     : scan_(&scan),
       settings_(settings),
       field_(settings.field ? settings.field
@@ -111,21 +112,21 @@ View::View(const DecodedScan& scan, const ReconstructSettings& settings, bool ro
   nearest_m_ = nearest / 2;
 }
 
-Result<View> View::make(const DecodedScan& scan, const ReconstructSettings& settings,
-                        bool rows_of_profile) {
+Result<ScanView> ScanView::make(const DecodedScan& scan, const ReconstructSettings& settings,
+                                bool rows_of_profile) {
   CURLIDAR_TRY(check_settings(scan, settings));
   CURLIDAR_TRY(check_lattice(scan));
-  return View(scan, settings, rows_of_profile);
+  return ScanView(scan, settings, rows_of_profile);
 }
 
-bool View::holds(const Vec3& point) const {
+bool ScanView::holds(const Vec3& point) const {
   if (!cropped_) return true;
   const ScanRegion& region = *settings_.region;
   return turn_on(region.azimuth_begin, azimuth_of(point)) <
          region.azimuth_end - region.azimuth_begin;
 }
 
-bool View::may_hold(const Sightline& line) const {
+bool ScanView::may_hold(const Sightline& line) const {
   constexpr double kMargin = 1e-6;  // radians, for what is rounded
   if (!cropped_) return true;
   // Along a straight line the azimuth turns one way, to that of its direction.
@@ -140,12 +141,12 @@ bool View::may_hold(const Sightline& line) const {
          turn_on(first, region.azimuth_begin) < width;
 }
 
-void View::look(std::span<const Sightline> lines, std::span<Vec3> points,
-                std::span<float> confidence, std::size_t threads) const {
+void ScanView::look(std::span<const Sightline> lines, std::span<Vec3> points,
+                    std::span<float> confidence, std::size_t threads) const {
   std::vector<std::size_t> wanted;
   std::vector<Sightline> asked;
   for (std::size_t i = 0; i < lines.size(); ++i) {
-    points[i] = kNoPoint;
+    points[i] = kNowherePoint;
     confidence[i] = 0;
     if (!may_hold(lines[i])) continue;
     wanted.push_back(i);
@@ -168,8 +169,8 @@ void View::look(std::span<const Sightline> lines, std::span<Vec3> points,
   }
 }
 
-void View::look_along_row(double row, std::span<const double> columns, std::span<Vec3> points,
-                          std::span<float> confidence) const {
+void ScanView::look_along_row(double row, std::span<const double> columns, std::span<Vec3> points,
+                              std::span<float> confidence) const {
   std::vector<double> ranges(columns.size());
   field_->evaluate_row(row, columns, settings_.masks, ranges);
   field_->place_row(row, columns, ranges, points);
@@ -179,7 +180,7 @@ void View::look_along_row(double row, std::span<const double> columns, std::span
     if (!std::isnan(ranges[i]) && holds(points[i])) {
       found.push_back(i);
     } else {
-      points[i] = kNoPoint;
+      points[i] = kNowherePoint;
     }
   }
   if (!asks_confidence()) return;
@@ -189,7 +190,7 @@ void View::look_along_row(double row, std::span<const double> columns, std::span
   field_->range_along(lines_of_row(*field_, row, asked), estimates);
   for (std::size_t k = 0; k < found.size(); ++k) {
     confidence[found[k]] = estimates[k].confidence;
-    if (!sure(estimates[k].confidence)) points[found[k]] = kNoPoint;
+    if (!sure(estimates[k].confidence)) points[found[k]] = kNowherePoint;
   }
 }
 

@@ -31,13 +31,13 @@ struct Samples {
 };
 
 /// The field of a scan and what of it is to be believed. `scan` must outlive the view.
-class View {
+class ScanView {
  public:
   /// Invalid_argument as check_settings says, and for files without a field.
   /// `rows_of_profile`: lines that are those of a row of the density profile are to see what that
   /// row would have measured.
-  static Result<View> make(const DecodedScan& scan, const ReconstructSettings& settings,
-                           bool rows_of_profile = false);
+  static Result<ScanView> make(const DecodedScan& scan, const ReconstructSettings& settings,
+                               bool rows_of_profile = false);
 
   const DecodedScan& scan() const { return *scan_; }
   const ReconstructSettings& settings() const { return settings_; }
@@ -63,7 +63,7 @@ class View {
 
   bool asks_confidence() const { return settings_.confidence || settings_.min_confidence > 0; }
 
-  View(const DecodedScan& scan, const ReconstructSettings& settings, bool rows_of_profile);
+  ScanView(const DecodedScan& scan, const ReconstructSettings& settings, bool rows_of_profile);
 
   const DecodedScan* scan_;
   ReconstructSettings settings_;
@@ -99,6 +99,6 @@ Status check_points(std::uint64_t rows, std::uint64_t columns, const char* what,
                     const ReconstructSettings& settings, std::uint64_t kept = 0);
 
 inline constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-inline constexpr Vec3 kNoPoint{kNowhere, kNowhere, kNowhere};
+inline constexpr Vec3 kNowherePoint{kNowhere, kNowhere, kNowhere};
 
 }  // namespace curlidar
