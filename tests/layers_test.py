@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The rules of the house that a compiler does not check.
 
-Includes go one way down, public headers stand on std alone, files stay small, every file names
-its licence, and pages name files that exist. docs/design.md explains the layers; this file is their exact definition.
+Includes go one way down, public headers stand on std alone, a name is that of one thing, files stay
+small, every file names its licence, and pages name files that exist. docs/design.md explains the
+layers; this file is their exact definition.
 """
 import re
 import unittest
@@ -70,7 +71,8 @@ def may_include(layer, other):
 
 def shared_names(file):
     """Types, constants and inline functions of a file that the linker takes for those of another
-    file with the same name and namespace: all but those of unnamed namespaces."""
+    file with the same name and namespace: all but those of unnamed namespaces. Lines alone are
+    read, so members are not seen, and overloads in two files count as one name."""
     spaces, names = [], set()
     for line in file.read_text(encoding="utf-8").splitlines():
         if opened := re.match(r"namespace(?: ([\w:]+))? \{", line):
@@ -130,7 +132,7 @@ class LayersTest(unittest.TestCase):
         # Two definitions of one name, and the linker keeps either of them: what breaks depends on
         # what the compiler has inlined.
         where = {}
-        for file in [*source_files("include", "src"), *source_files("apps")]:
+        for file in source_files("include", "src", "apps"):
             for name in shared_names(file):
                 where.setdefault(name, []).append(str(file.relative_to(ROOT)))
         twice = {name: files for name, files in where.items() if len(files) > 1}
