@@ -13,8 +13,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 
 # Folders of src/ from the bottom up; a folder may include itself and those before it.
-LAYERS = ["base", "cloud", "io", "sensor", "image", "field", "paper", "fixed", "entropy",
-          "compact", "format", "records", "codec", "dense", "reconstruct"]
+LAYERS = ["base", "cloud", "register", "io", "sensor", "image", "field", "paper", "fixed", "entropy",
+          "compact", "format", "records", "codec", "map", "mapfile", "mapview", "dense", "reconstruct"]
 # Rooms beside the codec; they see these layers only, and no layer sees them.
 BESIDE = {"metrics", "simulate", "render"}
 SEEN_BESIDE = {"base", "cloud", "io", "sensor", "image"}
@@ -22,9 +22,11 @@ SEEN_BESIDE = {"base", "cloud", "io", "sensor", "image"}
 # The layer that each public header belongs to. settings.hpp holds plain values that flow down to
 # every layer that needs them; paper.hpp shows stages of the codec.
 HEADERS = {
-    "version": "base", "result": "base", "progress": "base", "vec3": "base", "cloud": "cloud",
+    "version": "base", "result": "base", "progress": "base", "vec3": "base", "motion": "base", "cloud": "cloud",
     "io": "io", "sensor": "sensor", "calibrate": "sensor", "lattice": "image", "project": "image",
     "settings": "image",
+    "pose": "io", "register": "register", "sequence": "codec", "map_tile": "map", "map": "mapfile",
+    "map_view": "mapview",
     "field": "field", "dense": "dense", "paper": "codec", "codec": "codec", "compare": "metrics",
     "metrics": "metrics",
     "simulate": "simulate", "render": "render", "verify": "codec", "reconstruct": "reconstruct",

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "curlidar/lattice.hpp"
+#include "curlidar/motion.hpp"
 #include "curlidar/vec3.hpp"
 
 namespace curlidar {
@@ -45,21 +46,6 @@ struct RangeEstimate {
 struct Sources {
   std::array<std::size_t, 4> cell{};  ///< row * columns + column
   std::array<double, 4> weight{};
-};
-
-/// A motion of points: rotated, then moved.
-struct RigidMotion {
-  std::array<Vec3, 3> rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< rows of the matrix
-  Vec3 move{};
-
-  Vec3 turned(const Vec3& p) const {
-    return {dot(rotation[0], p), dot(rotation[1], p), dot(rotation[2], p)};
-  }
-  Vec3 turned_back(const Vec3& p) const {
-    return rotation[0] * p.x + rotation[1] * p.y + rotation[2] * p.z;
-  }
-  Vec3 operator()(const Vec3& p) const { return turned(p) + move; }
-  Vec3 undo(const Vec3& p) const { return turned_back(p - move); }
 };
 
 /// The lines of sight of a row in the sensor's own frame: they meet its spin axis, the z axis, at
