@@ -25,7 +25,7 @@ HEADERS = {
     "version": "base", "result": "base", "progress": "base", "vec3": "base", "motion": "base", "cloud": "cloud",
     "io": "io", "sensor": "sensor", "calibrate": "sensor", "lattice": "image", "project": "image",
     "settings": "image",
-    "pose": "io", "register": "register", "sequence": "codec", "map_tile": "map", "map": "mapfile",
+    "pose": "io", "register": "register", "sequence": "codec", "map_tile": "map", "map_settings": "map", "map": "mapfile",
     "map_view": "mapview",
     "field": "field", "dense": "dense", "paper": "codec", "codec": "codec", "compare": "metrics",
     "metrics": "metrics",

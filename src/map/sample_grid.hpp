@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Points seen many times, made few: one sample for each small cube.
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "curlidar/map_settings.hpp"
+
+namespace curlidar {
+
+/// Gathers the points of a tile. What it gives does not depend on the order in which points came.
+/// 64 bytes or so for each cube that was hit.
+class SampleGrid {
+ public:
+  explicit SampleGrid(double edge_m = 0.05) : edge_m_(edge_m) {}
+
+  /// `position` from the tile's origin; false, and nothing added, beyond 2^20 cubes from it or if
+  /// it is not finite. An intensity that is not finite is none.
+  bool add(const Vec3& position, float intensity);
+
+  std::size_t size() const { return cells_.size(); }
+  bool empty() const { return cells_.empty(); }
+
+  /// One sample for each cube, at the mean of its points, sorted. Its weight grows with their
+  /// number, but never above `kMostWeight`: to pass a street twice must not make it dear.
+  std::vector<MapSample> samples() const;
+  static constexpr float kMostWeight = 2;
+
+ private:
+  struct Cell {
+    std::uint32_t points = 0, with_intensity = 0;
+    std::int64_t x = 0, y = 0, z = 0;  ///< sums, from the cube's corner, in 1/65536 of its edge
+    double intensity = 0;              ///< sum of multiples of 2^-16: exact in any order
+  };
+
+  double edge_m_;
+  std::unordered_map<std::uint64_t, Cell> cells_;
+};
+
+}  // namespace curlidar
