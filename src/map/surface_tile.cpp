@@ -2,68 +2,135 @@
 #include "map/surface_tile.hpp"
 
 #include <cmath>
-#include <cstddef>
-#include <map>
-#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "base/try.hpp"
+#include "entropy/range_coder.hpp"
+#include "map/tile_header.hpp"
+#include "map/tile_lod.hpp"
+#include "map/tile_samples.hpp"
+#include "map/tile_search.hpp"
 
 namespace curlidar {
 namespace {
 
-constexpr double kUnit = 4096;
+using namespace tile;
+
+/// What lies farther from a plane than this counts less and less when planes are fitted.
+constexpr double kNear_m = 0.05;
+/// Surface without samples, in left-out samples a square metre.
+constexpr double kBare = 20;
+
+TileWeighing weighing_of(const SurfaceSettings& settings) {
+  return {settings.metres_per_bit * kTicks, settings.drop_m * kTicks, kNear_m * kTicks,
+          kBare * settings.drop_m / kTicks};
+}
+
+double metres(std::int32_t ticks) {
+  return static_cast<double>(ticks) / kTicks;
+}
+
+MapLeaf map_leaf(const TileState& state, const PlacedLeaf& placed) {
+  const TileLayout& layout = state.layout();
+  const Ticks3 centre = centre_of(layout, placed.cube);
+  const TilePlane& plane = state.planes()[placed.plane];
+  MapLeaf leaf;
+  leaf.centre = {metres(centre[0]), metres(centre[1]), metres(centre[2])};
+  leaf.size_m = metres(layout.edge(placed.cube.level));
+  leaf.axis = static_cast<std::uint8_t>(plane.axis);
+  leaf.level = static_cast<std::uint8_t>(placed.cube.level);
+  leaf.height_m = metres(plane.at(centre[u_axis(plane.axis)], centre[v_axis(plane.axis)]));
+  for (std::size_t k = 0; k < 2; ++k) leaf.slope[k] = plane.slope[k] / 65536.0;
+  for (std::size_t k = 0; k < 3; ++k) leaf.curve[k] = placed.curve[k] / 65536.0;
+  leaf.cells = layout.cells(placed.cube.level);
+  leaf.first_cell = placed.first_cell;
+  if (layout.intensity) {
+    leaf.intensity = static_cast<float>(placed.intensity) * layout.intensity_step;
+  }
+  return leaf;
+}
+
+MapTile map_tile(const TileState& state) {
+  MapTile tile;
+  tile.side_m = metres(state.layout().edge(0)) * state.layout().side_roots;
+  tile.leaves.reserve(state.leaves().size());
+  for (const PlacedLeaf& placed : state.leaves()) tile.leaves.push_back(map_leaf(state, placed));
+  tile.footprint = state.cells();
+  return tile;
+}
+
+/// Codes a root and what is below it; `node` -1 is empty. False where `go_on` said so.
+template <class Sink, class GoOn>
+bool code_root(Sink& sink, TileState& state, const CubeContext& c,
+               const std::vector<TileNode>* nodes, std::int32_t node, const GoOn& go_on) {
+  if (!code_occupied(sink, c, 0, node >= 0)) {
+    state.set_empty(c.cube);
+    return true;
+  }
+  return TreeCoder<Sink, GoOn>(sink, state, nodes, go_on).code(c, node);
+}
 
 }  // namespace
 
 Result<std::vector<std::byte>> encode_surface_tile(std::vector<MapSample> samples,
                                                    const SurfaceSettings& settings, double side_m) {
   CURLIDAR_TRY(validate(settings, side_m));
-  using Cube = std::tuple<std::uint32_t, std::uint32_t, std::int64_t>;
-  std::map<Cube, std::pair<double, double>> heights;
-  for (const MapSample& sample : samples) {
-    const Vec3& p = sample.position;
-    if (!(p.x >= 0 && p.x < side_m && p.y >= 0 && p.y < side_m && std::abs(p.z) < 1e5)) {
-      return Error{ErrorCode::invalid_argument, "a sample outside of its tile"};
-    }
-    auto& [sum, count] = heights[{static_cast<std::uint32_t>(p.x / settings.smallest_leaf_m),
-                                  static_cast<std::uint32_t>(p.y / settings.smallest_leaf_m),
-                                  std::llround(std::floor(p.z / settings.smallest_leaf_m))}];
-    sum += p.z;
-    count += 1;
-  }
+  TileLayout layout = layout_of(settings, side_m);
+  CURLIDAR_TRY_ASSIGN(sorted, sort_samples(samples, layout));
   ByteWriter out;
-  out.write_varint(static_cast<std::uint64_t>(side_m * 16));
-  out.write_varint(static_cast<std::uint64_t>(settings.smallest_leaf_m * 16));
-  for (const auto& [cube, sum] : heights) {
-    out.write_varint(std::get<0>(cube));
-    out.write_varint(std::get<1>(cube));
-    out.write(static_cast<std::int32_t>(std::get<2>(cube)));
-    out.write(static_cast<std::int32_t>(sum.first / sum.second * kUnit));
-  }
+  write_header(out, layout);
+  const TileWeighing weighing = weighing_of(settings);
+  TileState state(layout);
+  TileModels models;
+  RangeEncoder encoder;
+  TileSink<RangeEncoder> sink(encoder, models);
+  std::size_t next = 0;
+  for_each_root(layout, [&](const TileCube& cube) {
+    const CubeContext c = state.context(cube);
+    TileSearch search(state, models, weighing, sorted.samples);
+    std::int32_t node = -1;
+    if (next < sorted.roots.size() && sorted.roots[next].cube.at == cube.at) {
+      const TileState::Mark mark = state.mark();
+      node = search.root(c, sorted.roots[next++]);
+      state.forget(cube, mark);
+    }
+    return code_root(sink, state, c, &search.nodes(), node, [] { return true; });
+  });
+  out.write_bytes(std::move(encoder).finish());
   return std::move(out).bytes();
 }
 
-Result<MapTile> decode_surface_tile(ByteSpan bytes, const TileLimits& limits, std::uint32_t) {
+Result<MapTile> decode_surface_tile(ByteSpan bytes, const TileLimits& limits,
+                                    std::uint32_t max_level) {
   ByteReader in(bytes);
-  MapTile tile;
-  tile.side_m = static_cast<double>(in.read_varint()) / 16;
-  const double size = static_cast<double>(in.read_varint()) / 16;
-  while (in.remaining() > 0) {
-    const auto x = static_cast<double>(in.read_varint()), y = static_cast<double>(in.read_varint());
-    const double z = in.read<std::int32_t>();
-    const double height = in.read<std::int32_t>();
-    if (!in.ok()) return Error{ErrorCode::corrupt, "a tile ends within a leaf"};
-    if (tile.leaves.size() >= limits.max_leaves) {
-      return Error{ErrorCode::limit_exceeded, "a tile with more leaves than allowed"};
-    }
-    MapLeaf leaf;
-    leaf.size_m = size;
-    leaf.centre = {(x + 0.5) * size, (y + 0.5) * size, (z + 0.5) * size};
-    leaf.height_m = height / kUnit;
-    leaf.first_cell = tile.footprint.size();
-    tile.footprint.push_back(1);
-    tile.leaves.push_back(leaf);
+  CURLIDAR_TRY_ASSIGN(layout, read_header(in));
+  TileState state(layout);
+  TileModels models;
+  RangeDecoder decoder(in.take(in.remaining()));
+  TileSink<RangeDecoder> sink(decoder, models);
+  bool full = false;
+  const auto go_on = [&] {
+    full = state.leaves().size() >= limits.max_leaves ||
+           std::max(state.cells().size(), state.fine_cubes()) > limits.max_cells;
+    return !full && !decoder.exhausted();
+  };
+  const bool whole = for_each_root(layout, [&](const TileCube& cube) {
+    return !decoder.exhausted() && code_root(sink, state, state.context(cube), nullptr, -1, go_on);
+  });
+  if (full) {
+    return Error{
+        ErrorCode::limit_exceeded,
+        fmt::format("a tile has more than {} leaves or {} cells: raise the limits if it can "
+                    "be trusted",
+                    limits.max_leaves, limits.max_cells)};
   }
+  if (!whole || decoder.exhausted() || !decoder.finished()) {
+    return Error{ErrorCode::corrupt, "the bits of a tile do not end where its surface does"};
+  }
+  MapTile tile = map_tile(state);
+  if (max_level < layout.levels) return coarser(tile, layout, max_level);
   return tile;
 }
 

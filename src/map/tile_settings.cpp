@@ -36,16 +36,16 @@ Status validate(const SurfaceSettings& settings, double side_m) {
     CURLIDAR_TRY(within("intensity_step", settings.intensity_step, 1e-6, 1e6));
   }
   if (settings.smallest_leaf_m > settings.root_m ||
-      settings.root_m / settings.smallest_leaf_m > 64) {
+      settings.root_m / settings.smallest_leaf_m > 32) {
     return Error{
         ErrorCode::invalid_argument,
-        fmt::format("smallest_leaf_m is {:g} m; it must be from 1/64 of root_m ({:g} m) to all "
+        fmt::format("smallest_leaf_m is {:g} m; it must be from 1/32 of root_m ({:g} m) to all "
                     "of it",
                     settings.smallest_leaf_m, settings.root_m)};
   }
-  if (settings.root_m / settings.footprint_m > 64) {
+  if (settings.root_m / settings.footprint_m > 64 || settings.footprint_m > settings.root_m) {
     return Error{ErrorCode::invalid_argument,
-                 fmt::format("footprint_m is {:g} m; it must be at least 1/64 of root_m ({:g} m)",
+                 fmt::format("footprint_m is {:g} m; it must be from 1/64 of root_m ({:g} m)",
                              settings.footprint_m, settings.root_m)};
   }
   const double roots = side_m / settings.root_m;
