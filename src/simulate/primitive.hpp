@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "base/bvh.hpp"
 #include "curlidar/vec3.hpp"
 
 namespace curlidar::scenery {
@@ -32,11 +33,6 @@ enum class Shape : std::uint8_t {
 /// |x| <= half_width, bottom <= z <= spring, under half an ellipse of height `rise` (0: none).
 struct Opening {
   double half_width = 0.5, bottom = -2, spring = 0.5, rise = 0;
-};
-
-/// Axis-aligned bounds.
-struct Bounds {
-  Vec3 low, high;
 };
 
 /// A shape in the world. Built by `make_primitive`; stores the map from the world to the shape.

@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
+#include "base/bvh.hpp"
 #include "curlidar/simulate.hpp"
-#include "simulate/bvh.hpp"
 #include "simulate/primitive.hpp"
 
 namespace curlidar::scenery {

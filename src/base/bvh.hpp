@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A bounding volume hierarchy: which few of many primitives may a ray meet.
+// A bounding volume hierarchy: which few of many primitives may a ray meet, or lie near a point.
 #pragma once
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "simulate/primitive.hpp"
+#include "curlidar/vec3.hpp"
 
-namespace curlidar::scenery {
+namespace curlidar {
+
+/// Axis-aligned bounds.
+struct Bounds {
+  Vec3 low, high;
+};
 
 /// Binary tree of axis-aligned boxes, split by the surface area heuristic in 16 bins.
 class Bvh {
@@ -28,6 +35,10 @@ class Bvh {
   /// before t_max, roughly near ones first; visit may lower t_max.
   template <class Visit>
   void traverse(const Vec3& origin, const Vec3& direction, double t_max, const Visit& visit) const;
+  /// Calls visit(i, reach) for the primitives whose boxes are nearer to the point than `reach`,
+  /// near ones first; visit may lower reach.
+  template <class Visit>
+  void around(const Vec3& point, double reach, const Visit& visit) const;
 
  private:
   struct Node {
@@ -43,8 +54,14 @@ class Bvh {
     double enter(const Node& node, double t_max) const;
   };
 
+  struct Pending {
+    std::uint32_t node;
+    double distance;  ///< along the ray, or from the point
+  };
+
   static constexpr int kMaxDepth = 60;
 
+  static double distance(const Node& node, const std::array<double, 3>& point);
   void build(std::uint32_t node, const Range& range, std::span<const Bounds> bounds);
   std::uint32_t split(const Range& range, std::span<const Bounds> bounds);
 
@@ -78,17 +95,13 @@ void Bvh::traverse(const Vec3& origin, const Vec3& direction, double t_max,
                    const Visit& visit) const {
   if (nodes_.empty()) return;
   const Slabs slabs(origin, direction);
-  struct Pending {
-    std::uint32_t node;
-    double enter;
-  };
   std::array<Pending, kMaxDepth + 4> stack;
   std::size_t size = 0;
   const double root = slabs.enter(nodes_[0], t_max);
   if (root < t_max) stack[size++] = {0, root};
   while (size > 0) {
     const Pending pending = stack[--size];
-    if (pending.enter >= t_max) continue;
+    if (pending.distance >= t_max) continue;
     const Node& node = nodes_[pending.node];
     if (node.count > 0) {
       for (std::uint32_t i = 0; i < node.count; ++i) visit(node.first + i, t_max);
@@ -96,10 +109,44 @@ void Bvh::traverse(const Vec3& origin, const Vec3& direction, double t_max,
     }
     Pending near{node.first, slabs.enter(nodes_[node.first], t_max)};
     Pending far{node.first + 1, slabs.enter(nodes_[node.first + 1], t_max)};
-    if (near.enter > far.enter) std::swap(near, far);
-    if (far.enter < t_max) stack[size++] = far;
-    if (near.enter < t_max) stack[size++] = near;
+    if (near.distance > far.distance) std::swap(near, far);
+    if (far.distance < t_max) stack[size++] = far;
+    if (near.distance < t_max) stack[size++] = near;
   }
 }
 
-}  // namespace curlidar::scenery
+/// From the point to the node's box.
+inline double Bvh::distance(const Node& node, const std::array<double, 3>& point) {
+  double squared = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double outside =
+        std::max({node.bounds[axis] - point[axis], point[axis] - node.bounds[axis + 3], 0.0});
+    squared += outside * outside;
+  }
+  return std::sqrt(squared);
+}
+
+template <class Visit>
+void Bvh::around(const Vec3& point, double reach, const Visit& visit) const {
+  if (nodes_.empty()) return;
+  const std::array<double, 3> p{point.x, point.y, point.z};
+  std::array<Pending, kMaxDepth + 4> stack;
+  std::size_t size = 0;
+  stack[size++] = {0, distance(nodes_[0], p)};
+  while (size > 0) {
+    const Pending pending = stack[--size];
+    if (pending.distance >= reach) continue;
+    const Node& node = nodes_[pending.node];
+    if (node.count > 0) {
+      for (std::uint32_t i = 0; i < node.count; ++i) visit(node.first + i, reach);
+      continue;
+    }
+    Pending first{node.first, distance(nodes_[node.first], p)};
+    Pending second{node.first + 1, distance(nodes_[node.first + 1], p)};
+    if (first.distance > second.distance) std::swap(first, second);
+    stack[size++] = second;
+    stack[size++] = first;
+  }
+}
+
+}  // namespace curlidar

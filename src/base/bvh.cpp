@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "simulate/bvh.hpp"
+#include "base/bvh.hpp"
 
 #include <cmath>
 #include <limits>
 #include <numeric>
 
-namespace curlidar::scenery {
+namespace curlidar {
 
 namespace {
 
@@ -130,4 +130,4 @@ std::uint32_t Bvh::split(const Range& range, std::span<const Bounds> bounds) {
   return left > 0 && left < range.count ? left : range.count / 2;
 }
 
-}  // namespace curlidar::scenery
+}  // namespace curlidar
