@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "curlidar/io.hpp"
 #include "curlidar/version.hpp"
 
 namespace curlidar::app {
@@ -91,6 +92,7 @@ int guarded(int argc, char** argv) {
 }  // namespace curlidar::app
 
 int main(int argc, char** argv) {
+  curlidar::remove_temporary_files_on_signals();
   const int code = curlidar::app::guarded(argc, argv);
   const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   if (!written && code == 0) {

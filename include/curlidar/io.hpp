@@ -97,4 +97,8 @@ Status write_mesh(const std::string& path, std::span<const Vec3> vertices,
 Result<std::vector<std::byte>> read_file(const std::string& path);
 Status write_file(const std::string& path, std::span<const std::byte> bytes);
 
+/// From now on SIGINT, SIGTERM and SIGHUP remove unfinished outputs before they end the program;
+/// those that are ignored stay so. For programs; the library never calls it.
+void remove_temporary_files_on_signals();
+
 }  // namespace curlidar

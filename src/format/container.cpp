@@ -69,35 +69,20 @@ const char* name_of(ChunkType type) {
       return "order";
     case ChunkType::records:
       return "records";
+    case ChunkType::indexed_header:
+      return "indexed_header";
+    case ChunkType::indexed_part:
+      return "indexed_part";
+    case ChunkType::indexed_index:
+      return "indexed_index";
+    case ChunkType::indexed_footer:
+      return "indexed_footer";
     case ChunkType::promise:
       return "promise";
     case ChunkType::metadata:
       return "metadata";
   }
   return nullptr;
-}
-
-Status check_header(ByteSpan bytes) {
-  if (!starts_with(bytes, magic())) {
-    if (starts_with(bytes, magic().first(kMagicBeforeLineEnd))) {
-      return Error{ErrorCode::corrupt,
-                   "byte 5: the .curl header is damaged, as by a transfer in text mode; copy the "
-                   "file again in binary mode"};
-    }
-    return Error{ErrorCode::corrupt,
-                 "byte 0: not a .curl file (its first bytes are not \"\\x89CURL\\r\\n\")"};
-  }
-  if (bytes.size() < kHeaderSize) {
-    return Error{ErrorCode::corrupt, "byte 7: the .curl file is cut off inside its header"};
-  }
-  const auto version = static_cast<unsigned>(bytes[kHeaderSize - 1]);
-  if (version != kFormatVersion) {
-    return Error{ErrorCode::unsupported,
-                 fmt::format("byte 7: .curl format version {}, but this program reads version {} "
-                             "only; use the curlidar release that wrote the file",
-                             version, kFormatVersion)};
-  }
-  return {};
 }
 
 /// A chunk as far as it is there.
@@ -172,9 +157,38 @@ std::string to_string(ChunkType type) {
   return name != nullptr ? name : fmt::format("{:#04x}", static_cast<unsigned>(type));
 }
 
+std::vector<std::byte> container_header() {
+  ByteWriter writer;
+  writer.write_bytes(magic());
+  writer.write(kFormatVersion);
+  return std::move(writer).bytes();
+}
+
+Status check_container_header(ByteSpan bytes) {
+  if (!starts_with(bytes, magic())) {
+    if (starts_with(bytes, magic().first(kMagicBeforeLineEnd))) {
+      return Error{ErrorCode::corrupt,
+                   "byte 5: the .curl header is damaged, as by a transfer in text mode; copy the "
+                   "file again in binary mode"};
+    }
+    return Error{ErrorCode::corrupt,
+                 "byte 0: not a .curl file (its first bytes are not \"\\x89CURL\\r\\n\")"};
+  }
+  if (bytes.size() < kHeaderSize) {
+    return Error{ErrorCode::corrupt, "byte 7: the .curl file is cut off inside its header"};
+  }
+  const auto version = static_cast<unsigned>(bytes[kHeaderSize - 1]);
+  if (version != kFormatVersion) {
+    return Error{ErrorCode::unsupported,
+                 fmt::format("byte 7: .curl format version {}, but this program reads version {} "
+                             "only; use the curlidar release that wrote the file",
+                             version, kFormatVersion)};
+  }
+  return {};
+}
+
 ContainerWriter::ContainerWriter() {
-  writer_.write_bytes(magic());
-  writer_.write(kFormatVersion);
+  writer_.write_bytes(container_header());
 }
 
 void ContainerWriter::add(ChunkType type, ByteSpan payload) {
@@ -195,7 +209,7 @@ bool is_container(ByteSpan bytes) {
 }
 
 Result<PartialContainer> read_container_prefix(ByteSpan bytes) {
-  CURLIDAR_TRY(check_header(bytes));
+  CURLIDAR_TRY(check_container_header(bytes));
   ByteReader reader(bytes);
   reader.take(kHeaderSize);
   std::array<bool, 256> seen{};

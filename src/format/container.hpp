@@ -39,11 +39,15 @@ enum class ChunkType : std::uint8_t {
   compact_field = 0x14,     ///< likewise
   compact_residual = 0x15,  ///< likewise
   compact_rays = 0x16,
-  directions = 0x20,   ///< where returns lie beside the middles of their cells
-  loose = 0x21,        ///< points that are in no cell
-  corrections = 0x22,  ///< what brings points within a bound, or back bit for bit
-  order = 0x23,        ///< the slots of the cloud: their order, shape and kind
-  records = 0x24,      ///< attributes of every slot
+  directions = 0x20,      ///< where returns lie beside the middles of their cells
+  loose = 0x21,           ///< points that are in no cell
+  corrections = 0x22,     ///< what brings points within a bound, or back bit for bit
+  order = 0x23,           ///< the slots of the cloud: their order, shape and kind
+  records = 0x24,         ///< attributes of every slot
+  indexed_header = 0x30,  ///< of files of many parts (format/indexed_file.hpp)
+  indexed_part = 0x31,    ///< one for each part
+  indexed_index = 0x32,
+  indexed_footer = 0x33,
   metadata = 0x80,
   promise = 0x81,  ///< how exactly the points come back
 };
@@ -54,10 +58,15 @@ inline bool is_ancillary(ChunkType type) {
 /// Whether a file may hold more than one chunk of a known type.
 inline bool may_repeat(ChunkType type) {
   return type == ChunkType::compact_mask || type == ChunkType::compact_field ||
-         type == ChunkType::compact_residual;
+         type == ChunkType::compact_residual || type == ChunkType::indexed_part;
 }
 /// "sensor", "metadata", ...; "0x71" for a type without a name.
 std::string to_string(ChunkType type);
+
+/// The first kHeaderSize bytes of every file.
+std::vector<std::byte> container_header();
+/// Whether `bytes` start with them. Errors: corrupt, unsupported (another version).
+Status check_container_header(ByteSpan bytes);
 
 /// Collects chunks into a file.
 class ContainerWriter {
