@@ -33,10 +33,10 @@ struct MapHit {
 };
 
 struct MapSceneSettings {
-  /// Leaves meet each other with small steps, through which a line would slip. So a line meets a
-  /// leaf also this far beside its footprint, in edges of a footprint's cell (0 .. 1), unless it
-  /// meets surface proper within one such edge behind.
-  double gap_cells = 0.25;
+  /// Leaves meet each other with small steps, through which a line would slip. So a line that meets
+  /// no surface proper meets a leaf also this far beside its footprint and cube, in edges of a
+  /// footprint's cell (0 .. 1).
+  double gap_cells = 0.5;
 };
 
 /// The leaves of some tiles, ready to be looked at. Of a leaf's surface that counts which lies
@@ -87,6 +87,14 @@ struct SampleMapSettings {
 /// Errors: invalid_argument (a bad profile or pose), unsupported (not a spinning sensor).
 Result<Cloud> sample_map(const MapScene& scene, const SensorProfile& sensor,
                          const RigidMotion& T_map_sensor, const SampleMapSettings& settings = {});
+
+/// What a virtual sensor at T_map_sensor finds along the lines of sight of a scan's returns, in the
+/// sensor's frame: one point for each slot of the scan, NaN where there was no return or the map
+/// has nothing up to max_range_m. All lines start at the sensor's origin.
+/// Errors: invalid_argument (a bad pose).
+Result<Cloud> sample_map_along(const MapScene& scene, const Cloud& scan,
+                               const RigidMotion& T_map_sensor, double max_range_m,
+                               const SampleMapSettings& settings = {});
 
 /// A random subset of points that come one by one: each is in it with the same probability, and
 /// the same points give the same subset. Holds at most `capacity` of them, or, once there were

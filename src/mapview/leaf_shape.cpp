@@ -48,7 +48,7 @@ LeafShape::LeafShape(const MapTile& tile, const MapLeaf& leaf, const Vec3& shift
     : centre_(in_leaf_frame(leaf.axis, leaf.centre + shift)),
       half_m_(leaf.size_m / 2),
       cell_m_(leaf.size_m / leaf.cells),
-      gap_m_(gap_cells * cell_m_ + kRounding_m),
+      gap_m_(std::max(gap_cells * cell_m_, kRounding_m)),
       height_m_(leaf.height_m - in_leaf_frame(leaf.axis, leaf.centre)[2]),
       slope_(leaf.slope),
       curve_(leaf.curve),
@@ -60,6 +60,11 @@ LeafShape::LeafShape(const MapTile& tile, const MapLeaf& leaf, const Vec3& shift
 
 bool LeafShape::seen(std::int64_t i, std::int64_t j) const {
   return i >= 0 && j >= 0 && i < cells_ && j < cells_ && footprint_[i * cells_ + j] != 0;
+}
+
+std::int64_t LeafShape::cell_of(double x) const {
+  const double index = std::floor((x + half_m_) / cell_m_);
+  return static_cast<std::int64_t>(std::clamp(index, 0.0, static_cast<double>(cells_ - 1)));
 }
 
 double LeafShape::height(double u, double v) const {
@@ -97,11 +102,8 @@ std::optional<Bounds> LeafShape::bounds() const {
 
 /// Within the gap of a cell that was seen.
 bool LeafShape::near_footprint(double u, double v) const {
-  const auto cell = [&](double x) {
-    return static_cast<std::int64_t>(std::floor((x + half_m_) / cell_m_));
-  };
-  for (std::int64_t i = cell(u - gap_m_); i <= cell(u + gap_m_); ++i) {
-    for (std::int64_t j = cell(v - gap_m_); j <= cell(v + gap_m_); ++j) {
+  for (std::int64_t i = cell_of(u - gap_m_); i <= cell_of(u + gap_m_); ++i) {
+    for (std::int64_t j = cell_of(v - gap_m_); j <= cell_of(v + gap_m_); ++j) {
       if (seen(i, j)) return true;
     }
   }
@@ -122,9 +124,7 @@ LeafCrossing LeafShape::cross(const Vec3& origin, const Vec3& direction, double 
     const double at_u = u + t * d[0], at_v = v + t * d[1], off = std::abs(w + t * d[2]);
     const double side = std::max(std::abs(at_u), std::abs(at_v));
     if (side > half_m_ + gap_m_ || off > reach + gap_m_) continue;
-    const auto i = static_cast<std::int64_t>(std::floor((at_u + half_m_) / cell_m_));
-    const auto j = static_cast<std::int64_t>(std::floor((at_v + half_m_) / cell_m_));
-    if (off <= reach && seen(i, j)) {
+    if (off <= reach && side <= half_m_ + kRounding_m && seen(cell_of(at_u), cell_of(at_v))) {
       crossing.surface = t;
       return crossing;
     }
@@ -166,13 +166,9 @@ double LeafShape::distance(const Vec3& point, double reach) const {
   LeafFrame p = in_leaf_frame(axis_, point);
   for (std::size_t axis = 0; axis < 3; ++axis) p[axis] -= centre_[axis];
   // A cell is at least as far as its rectangle is along u and v.
-  const auto cell = [&](double x) {
-    const double index = std::floor((x + half_m_) / cell_m_);
-    return static_cast<std::int64_t>(std::clamp(index, 0.0, static_cast<double>(cells_ - 1)));
-  };
   const auto edge = [&](std::int64_t i) { return static_cast<double>(i) * cell_m_ - half_m_; };
-  for (std::int64_t i = cell(p[0] - reach); i <= cell(p[0] + reach); ++i) {
-    for (std::int64_t j = cell(p[1] - reach); j <= cell(p[1] + reach); ++j) {
+  for (std::int64_t i = cell_of(p[0] - reach); i <= cell_of(p[0] + reach); ++i) {
+    for (std::int64_t j = cell_of(p[1] - reach); j <= cell_of(p[1] + reach); ++j) {
       if (!seen(i, j)) continue;
       const Cell at{edge(i), edge(i + 1), edge(j), edge(j + 1)};
       const double du = std::max({at.u0 - p[0], p[0] - at.u1, 0.0});

@@ -53,6 +53,8 @@ class LeafShape {
   struct Cell {
     double u0, u1, v0, v1;
   };
+  /// Of a coordinate along u or v; the first or last one outside of the cube.
+  std::int64_t cell_of(double x) const;
   bool seen(std::int64_t i, std::int64_t j) const;
   bool near_footprint(double u, double v) const;
   double height(double u, double v) const;

@@ -111,8 +111,6 @@ Result<MapScene> MapScene::make(std::vector<MapTile> tiles, const MapSceneSettin
 MapHit MapScene::cast(const MapRay& ray, double max_range_m) const {
   const Vec3 origin = ray.origin - data_->origin;
   if (!finite(origin) || !finite(ray.direction)) return {};
-  // Nearest surface proper, and nearest margin of a leaf: the latter counts if the former does not
-  // follow within the edge of a cell.
   struct Nearest {
     double t = kInfinity;
     std::uint32_t shape = 0;
@@ -123,18 +121,15 @@ MapHit MapScene::cast(const MapRay& ray, double max_range_m) const {
       nearest = {t, shape};
     }
   };
-  const auto behind_margin = [&] {
-    return margin.t < kInfinity ? margin.t + data_->shapes[margin.shape].cell_m() : kInfinity;
-  };
   const double limit = std::nextafter(max_range_m, kInfinity);
   data_->tree.traverse(origin, ray.direction, limit, [&](std::uint32_t i, double& t_max) {
     const LeafCrossing crossing = data_->shapes[i].cross(origin, ray.direction, t_max);
     offer(surface, crossing.surface, i);
     offer(margin, crossing.margin, i);
     // Equally near leaves must still be seen.
-    t_max = std::min(limit, std::nextafter(std::min(surface.t, behind_margin()), kInfinity));
+    t_max = std::min(limit, std::nextafter(surface.t, kInfinity));
   });
-  const Nearest& nearest = surface.t <= behind_margin() ? surface : margin;
+  const Nearest& nearest = surface.t < kInfinity ? surface : margin;
   MapHit hit;
   if (!(nearest.t < kInfinity)) return hit;
   const LeafShape& shape = data_->shapes[nearest.shape];

@@ -116,6 +116,37 @@ TEST(SampleMap, IntensityIsThatOfTheLeaf) {
   EXPECT_LT(known, 20u);
 }
 
+TEST(SampleMapAlong, GivesAPointForEachLineOfSight) {
+  const MapScene scene = box(0.5f);
+  const RigidMotion at = pose(-0.4, {2, 1, 0});
+  Cloud scan;
+  for (int i = 0; i < 3000; ++i)
+    scan.positions.push_back(direction_of(0.001 * i - 1.5, 0.1 * i) * 3);
+  scan.positions[7] = {NAN, 0, 0};
+  scan.positions[8] = {0, 0, 0};
+  scan.width = 1500, scan.height = 2;
+  const auto cloud = sample_map_along(scene, scan, at, 6, {true, true, 2});
+  ASSERT_TRUE(cloud) << cloud.error().message;
+  ASSERT_EQ(cloud->size(), 3000u);
+  EXPECT_EQ(cloud->height, 2u);
+  EXPECT_NE(cloud->find("intensity"), nullptr);
+  std::size_t beyond = 0;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const Vec3& p = cloud->positions[i];
+    if (!is_return(p)) {
+      ++beyond;
+      continue;
+    }
+    EXPECT_TRUE(on_wall(at(p)));
+    EXPECT_LE(norm(p), 6 + 1e-9);
+    EXPECT_NEAR(norm(p * (1 / norm(p)) - scan.positions[i] * (1.0 / 3)), 0, 1e-9);
+  }
+  EXPECT_TRUE(std::isnan(cloud->positions[7].x) && std::isnan(cloud->positions[8].x));
+  EXPECT_GT(beyond, 10u);
+  EXPECT_LT(beyond, 1000u);
+  EXPECT_FALSE(sample_map_along(scene, scan, {{}, {0, NAN, 0}}, 6));
+}
+
 TEST(SampleMap, ThreadsChangeNothingAndNonsenseIsRefused) {
   const MapScene scene = box();
   const auto one = sample_map(scene, sensor(), {}, {true, true, 1});
