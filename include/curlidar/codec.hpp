@@ -157,6 +157,9 @@ struct ScanRegion {
   double azimuth_begin = -4, azimuth_end = 4;
 };
 
+/// A decoded scan that others are predicted from.
+class PredictionReference;
+
 struct DecodeOptions {
   DecodeLimits limits{};
   /// Compact files: without the residual layer.
@@ -168,6 +171,8 @@ struct DecodeOptions {
   /// Keep what `CompactContents::leaves` and `layer`, or `DecodedScan::paper_patches` tell.
   bool partition = false;
   std::size_t threads = 1;  ///< 0 = all cores
+  /// Of a scan that is predicted: the one before it. What sequences need (sequence.hpp).
+  std::shared_ptr<const PredictionReference> reference{};
 };
 
 /// A block of cells with the surfaces that describe it.

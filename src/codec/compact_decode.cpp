@@ -14,6 +14,7 @@
 #include "codec/cell_points.hpp"
 #include "codec/compact_field.hpp"
 #include "codec/compact_model.hpp"
+#include "codec/predicted.hpp"
 #include "codec/record_file.hpp"
 #include "compact/ray_tables.hpp"
 #include "format/attributes_chunk.hpp"
@@ -23,7 +24,7 @@ namespace curlidar {
 namespace {
 
 bool is_compact_type(ChunkType type) {
-  return type >= ChunkType::compact_parameters && type <= ChunkType::compact_rays;
+  return type >= ChunkType::compact_parameters && type <= ChunkType::compact_prediction;
 }
 
 compact::ScanChunks scan_chunks(const PartialContainer& container) {
@@ -234,13 +235,22 @@ bool is_compact(const std::vector<Chunk>& chunks) {
   return find_chunk(chunks, ChunkType::compact_parameters) != nullptr || has_records(chunks);
 }
 
+namespace {
+
+const compact::DecodedScan* reference_of(const DecodeOptions& options) {
+  return options.reference ? &options.reference->scan() : nullptr;
+}
+
+}  // namespace
+
 Result<CompactImage> decode_compact_image(ByteSpan bytes, const DecodeOptions& options) {
   CURLIDAR_TRY_ASSIGN(chunks, read_container(bytes));
   PartialContainer container;
   container.complete = true;
   container.chunks = std::move(chunks);
   CURLIDAR_TRY_ASSIGN(scan, decode_scan(scan_chunks(container), {options.limits.max_cells},
-                                        {options.field_only, {}, false, options.threads}));
+                                        {options.field_only, {}, false, options.threads,
+                                         reference_of(options)}));
   return CompactImage{std::move(scan.table),
                       {scan.parameters.rows, scan.parameters.columns, std::move(scan.range)}};
 }
@@ -267,10 +277,11 @@ Result<ImageParts> decode_image(const PartialContainer& container, const DecodeO
   scan_options.field_only = options.field_only && !has_records(container.chunks);
   scan_options.keep_nodes = options.partition;
   scan_options.threads = options.threads;
+  scan_options.reference = reference_of(options);
   ImageParts out;
   if (options.region) {
     CURLIDAR_TRY(check_region(*options.region));
-    CURLIDAR_TRY_ASSIGN(header, decode_scan_header(chunks, limits));
+    CURLIDAR_TRY_ASSIGN(header, decode_scan_header(chunks, limits, scan_options.reference));
     out.filter.emplace(*options.region, header,
                        header.table.rays.has_value() || has_records(container.chunks));
     if (out.filter->empty()) {

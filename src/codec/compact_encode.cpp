@@ -34,8 +34,9 @@ std::vector<std::uint32_t> coded_points(const GriddedScan& scan) {
 /// Decodes the file and measures it: what a report says is what a reader gets.
 Result<OwnErrors> measure_file(const std::vector<std::byte>& bytes, const Cloud& cloud,
                                const GriddedScan& scan, const compact::Image& expected,
-                               std::size_t threads) {
+                               const PredictionSource* source, std::size_t threads) {
   DecodeOptions options;
+  if (source != nullptr) options.reference = source->reference;
   options.threads = threads;
   options.limits = {UINT64_MAX, UINT64_MAX};
   CURLIDAR_TRY_ASSIGN(back, decode_compact_image(bytes, options));
@@ -58,7 +59,7 @@ std::map<std::string, std::string> metadata_of(const Cloud& cloud, const Gridded
 
 /// Codes the depth image that the settings ask for: returns that it has no cell for are dropped.
 Result<Encoded> encode_image(const Cloud& cloud, const EncodeSettings& settings,
-                             const ProgressCallback& progress) {
+                             const ProgressCallback& progress, const PredictionSource* source) {
   Stopwatch watch;
   Encoded out;
   EncodeReport& report = out.report;
@@ -69,7 +70,12 @@ Result<Encoded> encode_image(const Cloud& cloud, const EncodeSettings& settings,
   report.stages_ms.push_back({"grid", watch.lap_ms()});
 
   CompactJob job{cloud, scan, model, settings.compact, settings.threads, progress};
-  CURLIDAR_TRY(choose_range_offsets(job, estimate_range_offsets(scan, rows), error_m, model));
+  std::optional<PredictedModel> predicted;
+  if (source != nullptr) predicted = predict_model(*source, model);
+  if (predicted) job.predicted = &*predicted;
+  if (!predicted || !predicted->header.same_rows) {
+    CURLIDAR_TRY(choose_range_offsets(job, estimate_range_offsets(scan, rows), error_m, model));
+  }
   report.stages_ms.push_back({"offsets", watch.lap_ms()});
   CURLIDAR_TRY(choose_kind(job));
   CURLIDAR_TRY_ASSIGN(trial, search_target(job));
@@ -85,7 +91,7 @@ Result<Encoded> encode_image(const Cloud& cloud, const EncodeSettings& settings,
   report.stages_ms.push_back({"write", watch.lap_ms()});
 
   CURLIDAR_TRY_ASSIGN(
-      errors, measure_file(out.bytes, cloud, scan, trial.encoded.decoded, settings.threads));
+      errors, measure_file(out.bytes, cloud, scan, trial.encoded.decoded, source, settings.threads));
   report.compact = report_of(trial, scan, model, errors);
   if (settings.compact.target == CompactTarget::error_nn) {
     report.compact->error_nn_m = trial.error_nn_m;
@@ -105,10 +111,11 @@ Result<Encoded> encode_image(const Cloud& cloud, const EncodeSettings& settings,
 }  // namespace
 
 Result<Encoded> encode_compact(const Cloud& cloud, const EncodeSettings& settings,
-                               const ProgressCallback& progress) {
+                               const ProgressCallback& progress,
+                               const PredictionSource* source) {
   CURLIDAR_TRY(validate(settings.compact));
-  return keeps_every_return(settings.compact) ? encode_records(cloud, settings, progress)
-                                              : encode_image(cloud, settings, progress);
+  return keeps_every_return(settings.compact) ? encode_records(cloud, settings, progress, source)
+                                              : encode_image(cloud, settings, progress, source);
 }
 
 }  // namespace curlidar

@@ -126,10 +126,10 @@ void CompactField::find_corrections() {
       for (std::uint32_t column = 0; column < place.columns; ++column) {
         const std::size_t at = cell(place.row + row, place.column + column);
         if (scan_.range[at] <= 0 || scan_.surface[at] < 0) continue;
-        const auto& placed = scan_.surfaces[static_cast<std::size_t>(scan_.surface[at])];
+        const auto& frame = scan_.surfaces[static_cast<std::size_t>(scan_.surface[at])].frame;
         const compact::Sight sight = geometry.sight(std::size_t{row} * geometry.columns() + column);
         correction_[at] = static_cast<std::int32_t>(scan_.range[at] - offset(place.row + row) -
-                                                    placed.surface.range_at(placed.frame, sight));
+                                                    surface_in(scan_, at).range_at(frame, sight));
       }
     }
   }
@@ -191,8 +191,8 @@ double CompactField::calibrated(std::size_t cell) const {
 
 double CompactField::extend(std::size_t cell, const compact::Sight& sight) const {
   if (scan_.surface[cell] < 0) return calibrated(cell);
-  const auto& placed = scan_.surfaces[static_cast<std::size_t>(scan_.surface[cell])];
-  const std::int64_t range = placed.surface.range_at(placed.frame, sight) + correction_[cell];
+  const auto& frame = scan_.surfaces[static_cast<std::size_t>(scan_.surface[cell])].frame;
+  const std::int64_t range = surface_in(scan_, cell).range_at(frame, sight) + correction_[cell];
   return static_cast<double>(std::max<std::int64_t>(range, 1)) / compact::kRangeUnit;
 }
 

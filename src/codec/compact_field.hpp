@@ -42,6 +42,7 @@ class CompactField : public Field {
   double ring_offset_m(std::uint32_t row) const override;
   double step_m() const override;
   RowLine row_line(double row) const override;
+  const compact::DecodedScan& scan() const { return scan_; }
   bool moves() const override { return rays_ && !scan_.table.rays->motion.none(); }
   RigidMotion motion_at(double azimuth) const override;
 

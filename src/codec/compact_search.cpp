@@ -259,6 +259,10 @@ Result<CompactTrial> try_steps(const CompactJob& job, const compact::Steps& step
   settings.sectors = job.settings.sectors;
   settings.threads = job.threads;
   settings.max_error = job.max_error;
+  if (job.predicted != nullptr) {
+    settings.prediction = &job.predicted->prediction;
+    settings.header = &job.predicted->header;
+  }
   CURLIDAR_TRY_ASSIGN(encoded, encode_scan(job.model.image, job.model.table, settings));
   CompactTrial trial;
   trial.steps = steps;

@@ -7,6 +7,7 @@
 
 #include "codec/compact_grid.hpp"
 #include "codec/compact_model.hpp"
+#include "codec/predicted_image.hpp"
 #include "compact/scan_encoder.hpp"
 #include "curlidar/codec.hpp"
 
@@ -30,6 +31,7 @@ struct CompactJob {
   std::optional<std::vector<Vec3>> loose{};
   double beside_bits = 0;      ///< what a file takes besides its image and offsets of directions
   std::int32_t max_error = 0;  ///< of a range, Q16 metres; 0 = none
+  const PredictedModel* predicted = nullptr;  ///< of the model's image, if there is a scan before
 };
 
 /// One encoding and what it gave.

@@ -139,7 +139,8 @@ void reorder(Cloud& cloud, RecordLayout& layout) {
 /// Geometry and order of a cloud laid out.
 Result<RecordEncoding> encode_layout(Cloud given, RecordLayout layout,
                                      const EncodeSettings& settings,
-                                     const ProgressCallback& progress) {
+                                     const ProgressCallback& progress,
+                                     const PredictionSource* source) {
   const std::size_t container_bytes = kHeaderSize + compact::frame_size(0);
   RecordEncoding out;
   out.cloud = std::move(given);
@@ -149,8 +150,8 @@ Result<RecordEncoding> encode_layout(Cloud given, RecordLayout layout,
   if (!settings.compact.keep_order) reorder(out.cloud, out.layout);
   const std::vector<std::uint32_t> slots = slots_of_records(out.layout);
   std::vector<std::uint8_t> occupied;
-  for (const std::uint32_t source : out.layout.scan.source) {
-    occupied.push_back(source != kNoPoint ? 1 : 0);
+  for (const std::uint32_t slot : out.layout.scan.source) {
+    occupied.push_back(slot != kNoPoint ? 1 : 0);
   }
   const CellGrid grid{out.layout.scan.rows, out.layout.scan.columns, occupied,
                       out.layout.loose.size()};
@@ -173,7 +174,8 @@ Result<RecordEncoding> encode_layout(Cloud given, RecordLayout layout,
     CURLIDAR_TRY_ASSIGN(
         image,
         encode_record_image(cloud, out.layout, loose, settings,
-                            beside_bits + 8.0 * static_cast<double>(framed(out.loose)), progress));
+                            beside_bits + 8.0 * static_cast<double>(framed(out.loose)), progress,
+                            source));
     out.image = std::move(image);
   }
   CURLIDAR_TRY(add_corrections(cloud, slots, settings.compact, loose, out));
@@ -223,13 +225,19 @@ Result<Cloud> kept_cloud(const Cloud& cloud, const EncodeSettings& settings) {
 /// Tries what may be smaller than the layout's image for clouds without a lattice of rays, and what
 /// may reach a target that the image does not.
 Result<RecordEncoding> encode_best(const Cloud& cloud, const EncodeSettings& settings,
-                                   const ProgressCallback& progress) {
+                                   const ProgressCallback& progress,
+                                   const PredictionSource* source) {
   CURLIDAR_TRY_ASSIGN(layout, lay_out(cloud, settings));
   const bool certain = layout.lattice || layout.scan.cell_centres || layout.scan.rows == 0;
   const bool has_image = layout.scan.counts.kept > 0;
-  Result<RecordEncoding> laid_out = encode_layout(cloud, std::move(layout), settings, progress);
+  if (source != nullptr && !has_image) {
+    return Error{ErrorCode::unsupported, "a scan without an image cannot be predicted"};
+  }
+  Result<RecordEncoding> laid_out =
+      encode_layout(cloud, std::move(layout), settings, progress, source);
+  if (source != nullptr) return laid_out;
   if (!laid_out && laid_out.error().code == ErrorCode::invalid_argument && has_image) {
-    Result<RecordEncoding> loose = encode_layout(cloud, lay_out_loose(cloud), settings, {});
+    Result<RecordEncoding> loose = encode_layout(cloud, lay_out_loose(cloud), settings, {}, nullptr);
     if (!loose) return laid_out;
     loose->layout.notes.push_back(
         "The target is out of the reach of ranges on a lattice: the points are coded one after "
@@ -241,7 +249,7 @@ Result<RecordEncoding> encode_best(const Cloud& cloud, const EncodeSettings& set
   const CompactTarget target = settings.compact.target;
   const bool comparable = target != CompactTarget::bits_per_point && target != CompactTarget::step;
   if (certain || !comparable) return best;
-  Result<RecordEncoding> loose = encode_layout(cloud, lay_out_loose(cloud), settings, {});
+  Result<RecordEncoding> loose = encode_layout(cloud, lay_out_loose(cloud), settings, {}, nullptr);
   if (!loose || loose->geometry_bytes() >= best.geometry_bytes()) return best;
   loose->layout.notes.push_back("The points take less one after the other than on their rings.");
   return loose;
@@ -315,13 +323,13 @@ const char* to_string(RecordLattice lattice) {
   return "none";
 }
 
-Result<Encoded> encode_records(const Cloud& source, const EncodeSettings& settings,
-                               const ProgressCallback& progress) {
+Result<Encoded> encode_records(const Cloud& given, const EncodeSettings& settings,
+                               const ProgressCallback& progress, const PredictionSource* source) {
   Stopwatch watch;
   Encoded out;
   EncodeReport& report = out.report;
-  CURLIDAR_TRY_ASSIGN(kept, kept_cloud(source, settings));
-  CURLIDAR_TRY_ASSIGN(encoding, encode_best(kept, settings, progress));
+  CURLIDAR_TRY_ASSIGN(kept, kept_cloud(given, settings));
+  CURLIDAR_TRY_ASSIGN(encoding, encode_best(kept, settings, progress, source));
   const Cloud& cloud = encoding.cloud;
   report.stages_ms.push_back({"geometry", watch.lap_ms()});
 
@@ -336,14 +344,15 @@ Result<Encoded> encode_records(const Cloud& source, const EncodeSettings& settin
   }
   report.stages_ms.push_back({"attributes", watch.lap_ms()});
 
-  std::map<std::string, std::string> named = source.metadata;
+  std::map<std::string, std::string> named = given.metadata;
   const GriddedScan& scan = encoding.layout.scan;
   if (!named.empty() && !scan.cell_centres && !scan.sensor.empty()) {
     named.emplace(kSensorKey, scan.sensor);
   }
   CURLIDAR_TRY_ASSIGN(metadata, metadata_payload(named));
   out.bytes = write_file(encoding, settings.compact, metadata);
-  CURLIDAR_TRY_ASSIGN(proof, verify_slots(out.bytes, cloud, settings.threads));
+  CURLIDAR_TRY_ASSIGN(proof, verify_slots(out.bytes, cloud, settings.threads,
+                                          source != nullptr ? source->reference : nullptr));
   if (!proof.ok) {
     return Error{ErrorCode::corrupt,
                  fmt::format("the file does not give back what it promises ({}), which is a "

@@ -3,11 +3,13 @@
 // point back to its place in the cloud.
 #pragma once
 
+#include "codec/predicted_image.hpp"
 #include "curlidar/codec.hpp"
 
 namespace curlidar {
 
 Result<Encoded> encode_records(const Cloud& cloud, const EncodeSettings& settings,
-                               const ProgressCallback& progress);
+                               const ProgressCallback& progress,
+                               const PredictionSource* source = nullptr);
 
 }  // namespace curlidar

@@ -112,7 +112,8 @@ Result<CompactTrial> encode_exactly(CompactJob& job, std::uint64_t range_unit_q4
 Result<RecordImage> encode_record_image(const Cloud& cloud, const RecordLayout& layout,
                                         const std::vector<Vec3>& loose,
                                         const EncodeSettings& settings, double beside_bits,
-                                        const ProgressCallback& progress) {
+                                        const ProgressCallback& progress,
+                                        const PredictionSource* source) {
   const bool exact = settings.compact.target == CompactTarget::lossless;
   const double error_m = exact ? kExactStep_m / 8 : first_error_guess(settings.compact);
   RecordImage out;
@@ -121,7 +122,16 @@ Result<RecordImage> encode_record_image(const Cloud& cloud, const RecordLayout& 
   CompactJob job{cloud, layout.scan, out.model, settings.compact, settings.threads, progress};
   job.loose = loose;
   job.beside_bits = beside_bits;
-  if (!exact) {
+  std::optional<PredictedModel> predicted;
+  if (source != nullptr) {
+    // Rows are shared with those of a reference that has the same unit.
+    if (exact && layout.lattice) {
+      out.model.table.rays->range_unit_q48 = range_unit_of(*layout.lattice);
+    }
+    predicted = predict_model(*source, out.model);
+  }
+  if (predicted) job.predicted = &*predicted;
+  if (!exact && !(predicted && predicted->header.same_rows)) {
     const RowModel rows = rows_of(layout, out.model, cloud, error_m);
     CURLIDAR_TRY(
         choose_range_offsets(job, estimate_range_offsets(layout.scan, rows), error_m, out.model));

@@ -18,6 +18,7 @@ struct RecordImage {
 Result<RecordImage> encode_record_image(const Cloud& cloud, const RecordLayout& layout,
                                         const std::vector<Vec3>& loose,
                                         const EncodeSettings& settings, double beside_bits,
-                                        const ProgressCallback& progress);
+                                        const ProgressCallback& progress,
+                                        const PredictionSource* source = nullptr);
 
 }  // namespace curlidar

@@ -188,8 +188,10 @@ void check_promise(Verification& v) {
   v.ok = v.failures.empty();
 }
 
-Result<DecodedScan> decode_all(ByteSpan bytes, std::size_t threads) {
+Result<DecodedScan> decode_all(ByteSpan bytes, std::size_t threads,
+                               const std::shared_ptr<const PredictionReference>& reference) {
   DecodeOptions options;
+  options.reference = reference;
   options.threads = threads;
   options.limits = {UINT64_MAX, UINT64_MAX};
   CURLIDAR_TRY_ASSIGN(scan, decode(bytes, options));
@@ -218,13 +220,14 @@ Verification compare_slots(const DecodedScan& scan, const Cloud& cloud) {
 
 }  // namespace
 
-Result<Verification> verify_slots(ByteSpan bytes, const Cloud& cloud, std::size_t threads) {
-  CURLIDAR_TRY_ASSIGN(scan, decode_all(bytes, threads));
+Result<Verification> verify_slots(ByteSpan bytes, const Cloud& cloud, std::size_t threads,
+                                  const std::shared_ptr<const PredictionReference>& reference) {
+  CURLIDAR_TRY_ASSIGN(scan, decode_all(bytes, threads, reference));
   return compare_slots(scan, cloud);
 }
 
 Result<Verification> verify(ByteSpan bytes, const Cloud& cloud, std::size_t threads) {
-  CURLIDAR_TRY_ASSIGN(scan, decode_all(bytes, threads));
+  CURLIDAR_TRY_ASSIGN(scan, decode_all(bytes, threads, {}));
   if (!scan.records->promise.any_order) return compare_slots(scan, cloud);
   Verification out;
   out.promise = scan.records->promise;

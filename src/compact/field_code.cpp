@@ -25,9 +25,9 @@ LeafSurfaces surfaces_of(FieldState& state, const BlockContext& context, const L
   }
   out.ranges.resize(cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const Sight sight = state.geometry.sight(cells[i]);
     for (std::uint32_t k = 0; k < leaf.layers; ++k) {
-      out.ranges[i][k] = static_cast<std::int32_t>(out.layers[k].surface.range_at(frame, sight));
+      out.ranges[i][k] = static_cast<std::int32_t>(
+          state.range_in(out.layers[k].surface, frame, cells[i]));
     }
   }
   return out;

@@ -56,13 +56,13 @@ EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& tr
   EncodedField out;
   state.clear();
   MeteredEncoder encoder;
-  FieldModels models;
+  FieldModels models(state.guide != nullptr);
   PartSink sink(encoder, models, out.part_cost);
   for (const Block& block : roots_of(state.geometry, state.settings)) {
     const std::size_t surfaces = state.surfaces.size();
     Node node{block, {}, {}, {}, {}};
     // What a root will cost is what the models have learnt from the roots before it.
-    const CostTable costs(models.models);
+    const CostTable costs(models);
     PartitionSearch(state, truth, settings, costs).search(node);
     state.forget(block, surfaces);
     code_node(sink, state, node);
@@ -75,7 +75,7 @@ EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& tr
 DecodedField decode_field(FieldState& state, ByteSpan bytes, bool whole, bool keep_nodes) {
   DecodedField out;
   RangeDecoder decoder(bytes);
-  FieldModels models;
+  FieldModels models(state.guide != nullptr);
   MixSink<RangeDecoder> sink(decoder, models);
   for (const Block& block : roots_of(state.geometry, state.settings)) {
     Node node{block, {}, {}, {}, {}};

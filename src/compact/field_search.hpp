@@ -13,7 +13,7 @@ namespace curlidar::compact {
 /// Cost in 1/256 bit of either value in each model; what a search believes the bits will cost.
 class CostTable {
  public:
-  explicit CostTable(const std::vector<BitModel>& models);
+  explicit CostTable(const FieldModels& models);
 
   std::uint32_t cost(std::uint32_t model, bool value) const { return costs_[model][value]; }
 
@@ -28,7 +28,7 @@ class SearchSink {
 
   explicit SearchSink(const CostTable& table) : table_(table) {}
   bool bit(const Contexts& c, bool value) {
-    cost_ += table_.cost(c.model[0], value);
+    cost_ += table_.cost(c.search, value);
     return value;
   }
   bool plain(FieldPart, bool value) {

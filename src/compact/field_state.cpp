@@ -52,10 +52,11 @@ constexpr std::int64_t kLonelyRange = 15 * kRangeUnit;
 }  // namespace
 
 FieldState::FieldState(const Geometry& g, const std::vector<std::uint8_t>& mask,
-                       const FieldSettings& field_settings)
+                       const FieldSettings& field_settings, const Guide* field_guide)
     : geometry(g),
       occupied(mask),
       settings(field_settings),
+      guide(field_guide),
       range(g.cells(), 0),
       surface(g.cells(), kNoSurface),
       depth_class(g.cells(), 0) {}

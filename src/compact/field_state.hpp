@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compact/geometry.hpp"
+#include "compact/prediction_guide.hpp"
 #include "compact/surface.hpp"
 
 namespace curlidar::compact {
@@ -30,9 +31,13 @@ struct PlacedSurface {
   std::uint32_t functions = 0;  ///< place in kFunctions
 };
 
+/// What a layer may inherit from besides surfaces of the scan itself, in place of their numbers.
+inline constexpr std::int32_t kWarpedField = -2;  ///< of every cell the plane that its guide has
+inline constexpr std::int32_t kWarpedPlane = -3;  ///< the plane of the guide at the block's middle
+
 /// Surfaces that a layer may inherit its plane from, without repetition.
 struct Parents {
-  static constexpr std::uint32_t kMost = 6;
+  static constexpr std::uint32_t kMost = 7;
   std::array<std::int32_t, kMost> surface{};
   std::uint32_t count = 0;
   std::int64_t range = 0;  ///< what the neighbours make expect, for a layer without a parent
@@ -40,12 +45,14 @@ struct Parents {
 
 class FieldState {
  public:
+  /// `guide`, if any, outlives this.
   FieldState(const Geometry& geometry, const std::vector<std::uint8_t>& occupied,
-             const FieldSettings& settings);
+             const FieldSettings& settings, const Guide* guide = nullptr);
 
   const Geometry& geometry;
   const std::vector<std::uint8_t>& occupied;
   const FieldSettings settings;
+  const Guide* const guide;
   std::vector<std::int32_t> range;        ///< of each cell as the field gives it
   std::vector<std::int32_t> surface;      ///< of each cell, kNoSurface where not coded or empty
   std::vector<std::uint8_t> depth_class;  ///< of the leaf of each cell: layers - 1
@@ -61,6 +68,13 @@ class FieldState {
     }
     return surface[static_cast<std::size_t>(row) * geometry.columns() +
                    static_cast<std::size_t>(column)];
+  }
+
+  /// Range of a surface in a cell of its block.
+  std::int64_t range_in(const Surface& of, const PatchFrame& frame, std::size_t at) const {
+    const Sight sight = geometry.sight(at);
+    if (!of.warped || guide->source[at] < 0) return of.range_at(frame, sight);
+    return on_plane_of(of, guide->plane(guide->source[at])).range_at(frame, sight);
   }
 
   const PatchShape& shape(const Block& block);

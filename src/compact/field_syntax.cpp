@@ -22,6 +22,88 @@ std::uint32_t distance_class(std::int64_t a, std::int64_t b, std::int32_t step) 
   return out;
 }
 
+/// Distances of the guide from the decoded ranges of a cell, if both are known.
+void add_miss(const FieldState& state, std::int64_t row, std::int64_t column, std::int64_t& sum,
+              std::int64_t& known) {
+  if (state.surface_at(row, column) == kNoSurface) return;
+  const auto cell =
+      state.cell(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(column));
+  if (state.guide->source[cell] < 0) return;
+  sum += std::abs(std::int64_t{state.range[cell]} - state.guide->range[cell]);
+  ++known;
+}
+
+/// How true the guide was beside the block: 0 not known, else 1 + the class of its distance.
+std::uint32_t trust_of(const FieldState& state, const Block& b) {
+  std::int64_t sum = 0, known = 0;
+  for (const std::uint32_t part : {1u, 3u}) {
+    add_miss(state, b.row + part * b.height / 4, std::int64_t{b.column} - 1, sum, known);
+    add_miss(state, std::int64_t{b.row} - 1, b.column + part * b.width / 4, sum, known);
+  }
+  if (known == 0) return 0;
+  return 1 + std::min(distance_class(sum / known, 0, state.settings.step), 3u);
+}
+
+/// The cell whose plane stands for a block: its middle, else its first return with a plane.
+std::int64_t guiding_cell(const FieldState& state, const Block& b, std::size_t middle) {
+  if (state.guide->source[middle] >= 0) return static_cast<std::int64_t>(middle);
+  for (std::uint32_t i = 0; i < b.height; ++i) {
+    const std::size_t begin = state.cell(b.row + i, b.column);
+    for (std::size_t cell = begin; cell < begin + b.width; ++cell) {
+      if (state.occupied[cell] && state.guide->source[cell] >= 0) {
+        return static_cast<std::int64_t>(cell);
+      }
+    }
+  }
+  return -1;
+}
+
+/// What the guide knows of a block: how many of its returns, and how flat that is.
+std::uint32_t warp_of(const FieldState& state, const Block& b, std::uint32_t returns,
+                      const Plane& plane, std::uint32_t trust) {
+  std::int64_t sum = 0, known = 0;
+  std::uint32_t sure = 0;
+  for (std::uint32_t i = 0; i < b.height; ++i) {
+    const std::size_t begin = state.cell(b.row + i, b.column);
+    for (std::size_t cell = begin; cell < begin + b.width; ++cell) {
+      if (!state.occupied[cell] || state.guide->source[cell] < 0) continue;
+      const Sight sight = state.geometry.sight(cell);
+      const std::int64_t flat = range_of(plane.at(sight.direction),
+                                         (std::int64_t{1} << 30) - plane.beside(sight.origin));
+      sum += std::abs(flat - state.guide->range[cell]);
+      sure += state.guide->level[cell] < 2;
+      ++known;
+    }
+  }
+  const std::uint32_t flat =
+      known == 0 ? 2 : std::min(distance_class(sum / known, 0, state.settings.step), 2u);
+  return 1 + ((4 * sure >= 3 * returns ? 1 : 0) * 3 + flat) * kTrustClasses + trust;
+}
+
+/// Puts the guide's parents before the others.
+void add_guide(const FieldState& state, std::size_t middle, std::uint32_t returns,
+               BlockContext& c) {
+  c.guided = true;
+  c.trust = trust_of(state, c.block);
+  const std::int64_t cell = guiding_cell(state, c.block, middle);
+  if (cell < 0) return;
+  const Plane& plane = state.guide->plane(state.guide->source[static_cast<std::size_t>(cell)]);
+  c.warp = warp_of(state, c.block, returns, plane, c.trust);
+  Parents& parents = c.parents;
+  const auto make_room = [&](auto& list) {
+    std::copy_backward(list.begin(), list.begin() + parents.count,
+                       list.begin() + parents.count + 2);
+  };
+  make_room(parents.surface);
+  make_room(c.parent_functions);
+  make_room(c.parent_plane);
+  parents.surface[0] = kWarpedField;
+  parents.surface[1] = kWarpedPlane;
+  c.parent_functions[0] = c.parent_functions[1] = 0;
+  c.parent_plane[0] = c.parent_plane[1] = plane;
+  parents.count += 2;
+}
+
 }  // namespace
 
 BlockContext block_context(FieldState& state, const Block& block, std::uint32_t returns) {
@@ -47,18 +129,21 @@ BlockContext block_context(FieldState& state, const Block& block, std::uint32_t 
   neighbour(std::int64_t{block.row} - 1, block.column + block.width / 2, c.above_size,
             c.above_depth);
 
-  c.middle =
-      state.geometry
-          .directions()[state.cell(block.row + block.height / 2, block.column + block.width / 2)];
-  std::int64_t low = 0, high = 0;
+  const std::size_t middle = state.cell(block.row + block.height / 2, block.column + block.width / 2);
+  c.middle = state.geometry.directions()[middle];
   for (std::uint32_t k = 0; k < c.parents.count; ++k) {
     const PlacedSurface& parent = state.surfaces[static_cast<std::size_t>(c.parents.surface[k])];
     c.parent_functions[k] = parent.functions;
-    const std::int64_t range = range_of(parent.surface.plane.at(c.middle));
+    c.parent_plane[k] = parent.surface.plane;
+  }
+  std::int64_t low = 0, high = 0;
+  for (std::uint32_t k = 0; k < c.parents.count; ++k) {
+    const std::int64_t range = range_of(c.parent_plane[k].at(c.middle));
     low = k == 0 ? range : std::min(low, range);
     high = k == 0 ? range : std::max(high, range);
   }
   c.spread = c.parents.count < 2 ? 0 : distance_class(low, high, state.settings.step);
+  if (state.guide != nullptr) add_guide(state, middle, returns, c);
   return c;
 }
 
@@ -75,8 +160,7 @@ LayerBase base_of(const FieldState& state, const BlockContext& c, const PatchFra
                        kMaxRange);
     base.plane = facing_plane(frame, range);
   } else {
-    const auto parent = static_cast<std::size_t>(c.parents.surface[layer.parent - 1]);
-    base.plane = state.surfaces[parent].surface.plane;
+    base.plane = c.parent_plane[layer.parent - 1];
     range = range_of(base.plane.at(c.middle));
   }
   base.step_q40 = coefficient_step((std::int64_t{1} << 46) / range, state.settings.step);
@@ -86,7 +170,15 @@ LayerBase base_of(const FieldState& state, const BlockContext& c, const PatchFra
 Surface surface_of(const FieldState& state, const BlockContext& c, const PatchFrame& frame,
                    const LayerCode& layer) {
   const LayerBase base = base_of(state, c, frame, layer);
-  return add_functions(base.plane, frame, base.step_q40, layer.q, kFunctions[layer.functions]);
+  const std::uint32_t functions = kFunctions[layer.functions];
+  if (c.kind_of(layer.parent) != 2) {
+    return add_functions(base.plane, frame, base.step_q40, layer.q, functions);
+  }
+  Surface warped = add_functions({}, frame, base.step_q40, layer.q, functions);
+  warped.warped = true;
+  warped.added = warped.plane;
+  warped.plane = on_plane_of(warped, base.plane).plane;
+  return warped;
 }
 
 LabelContexts::LabelContexts(const FieldState& state, const Block& block, std::uint32_t layers)
@@ -164,7 +256,27 @@ LabelContext LabelContexts::at(std::uint32_t cell, const LayerRanges& ranges) co
     bound = bound * 2 + 1;
     ++c.gap;
   }
+  if (state_.guide != nullptr) add_guess(cell, ranges, c);
   return c;
+}
+
+void LabelContexts::add_guess(std::uint32_t cell, const LayerRanges& ranges,
+                              LabelContext& c) const {
+  c.guided = true;
+  if (state_.guide->source[cell] < 0) return;
+  constexpr std::int64_t far = std::int64_t{1} << 40;
+  std::int64_t nearest = far, next = far;
+  for (std::uint32_t k = 0; k < layers_; ++k) {
+    const std::int64_t distance = std::abs(std::int64_t{ranges[k]} - state_.guide->range[cell]);
+    if (distance < nearest) {
+      next = nearest;
+      nearest = distance;
+      c.warped = k;
+    } else {
+      next = std::min(next, distance);
+    }
+  }
+  c.clear = 4 * nearest <= next;
 }
 
 }  // namespace curlidar::compact

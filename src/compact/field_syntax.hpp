@@ -43,6 +43,17 @@ struct BlockContext {
   std::uint32_t left_size = 0, above_size = 0;    ///< 0 none, 1 smaller, 2 equal, 3 larger block
   std::uint32_t left_depth = 0, above_depth = 0;  ///< 0 none, 1 one layer, 2 two, 3 more
   std::array<std::uint32_t, Parents::kMost> parent_functions{};  ///< places in kFunctions
+  std::array<Plane, Parents::kMost> parent_plane{};
+  bool guided = false;      ///< the scan is predicted: what follows counts
+  std::uint32_t warp = 0;   ///< class of what the guide knows of the block, below kWarpClasses
+  std::uint32_t trust = 0;  ///< class of how the guide was right beside the block
+
+  /// What a layer starts from: 0 nothing, 1 a neighbour, 2 the warped field, 3 its plane.
+  std::uint32_t kind_of(std::uint32_t parent) const {
+    if (parent == 0) return 0;
+    const std::int32_t surface = parents.surface[parent - 1];
+    return surface == kWarpedField ? 2 : surface == kWarpedPlane ? 3 : 1;
+  }
 };
 
 BlockContext block_context(FieldState& state, const Block& block, std::uint32_t returns);
@@ -76,7 +87,8 @@ Split code_split(Sink& sink, const BlockContext& c, const FieldSettings& setting
   if (!sink.bit(contexts_of(kSplit,
                             {s, s * 16 + c.left_size * 4 + c.above_size,
                              s * 12 + c.filled * 4 + c.few, s * 20 + c.spread * 4 + c.few},
-                            s),
+                            s, c.guided, s * kWarpClasses + c.warp,
+                            (s * kTrustClasses + c.trust) * 3 + c.filled),
                 split != Split::none)) {
     return Split::none;
   }
@@ -86,7 +98,7 @@ Split code_split(Sink& sink, const BlockContext& c, const FieldSettings& setting
         contexts_of(kSplitKind,
                     {n, n * 9 + std::min(c.left_depth, 2u) * 3 + std::min(c.above_depth, 2u),
                      n * 3 + c.filled, node},
-                    node),
+                    node, c.guided, n * kWarpClasses + c.warp, n * kTrustClasses + c.trust),
         value);
   };
   if (quad && (rows || columns)) {
@@ -122,52 +134,68 @@ std::int32_t code_range_steps(Sink& sink, const BlockContext& c, std::uint32_t l
   const std::uint32_t late = layer > 0 ? 1 : 0;
   const std::uint32_t known = std::min(c.parents.count, 3u);
   const std::uint32_t s = c.size * 2 + late;
-  if (!sink.bit(contexts_of(kRangeZero, {s, s * 4 + known, known, c.spread}, 0), value != 0)) {
+  if (!sink.bit(contexts_of(kRangeZero, {s, s * 4 + known, known, c.spread}, 0, c.guided,
+                            s * kTrustClasses + c.trust, late * kWarpClasses + c.warp),
+                value != 0)) {
     return 0;
   }
   const bool negative =
-      sink.bit(contexts_of(kRangeSign, {late, known, late, c.spread}, 0), value < 0);
+      sink.bit(contexts_of(kRangeSign, {late, known, late, c.spread}, 0, c.guided,
+                           late * kTrustClasses + c.trust, late),
+               value < 0);
   const std::uint32_t magnitude = code_magnitude(
       sink, FieldPart::coefficients, static_cast<std::uint32_t>(std::abs(value)) - (value != 0),
       [&](std::uint32_t at, bool bit) {
-        return sink.bit(contexts_of(kRangeClass, {at, at * 4 + known, at * 2 + late, at}, 0), bit);
+        return sink.bit(contexts_of(kRangeClass, {at, at * 4 + known, at * 2 + late, at}, 0,
+                                    c.guided, at * kTrustClasses + c.trust, at * 6 + c.size),
+                        bit);
       },
       [&](std::uint32_t size, bool bit) {
         return sink.bit(
-            contexts_of(kRangeBits, {size, size * 2 + negative, size * 2 + late, size}, 0), bit);
+            contexts_of(kRangeBits, {size, size * 2 + negative, size * 2 + late, size}, 0, c.guided,
+                        size * kTrustClasses + c.trust, size),
+            bit);
       });
   const auto steps = static_cast<std::int32_t>(std::min(magnitude + 1, std::uint32_t{1} << 24));
   return negative ? -steps : steps;
 }
 
 template <class Sink>
-std::int32_t code_coefficient(Sink& sink, const BlockContext& c, bool fresh, std::uint32_t layer,
-                              std::uint32_t functions, std::uint32_t k, std::uint32_t energy,
-                              std::int32_t value) {
+std::int32_t code_coefficient(Sink& sink, const BlockContext& c, std::uint32_t parent,
+                              std::uint32_t layer, std::uint32_t functions, std::uint32_t k,
+                              std::uint32_t energy, std::int32_t value) {
+  const bool fresh = parent == 0;
+  const std::uint32_t from = c.kind_of(parent);
   const std::uint32_t big = c.size > 2 ? 1 : 0;
   const std::uint32_t base = (fresh ? 6 : 0) + k;
   const std::uint32_t kind = base * 4 + big * 2 + (layer > 0 ? 1 : 0);
   const std::uint32_t e = std::min(energy, 3u);
   const std::uint32_t f = functions - 1;
   if (!sink.bit(contexts_of(kCoefficientZero, {kind, kind * 3 + f, kind * 6 + c.size, kind * 4 + e},
-                            base),
+                            base, c.guided, (kind * 4 + from) * kTrustClasses + c.trust,
+                            (base * 4 + from) * kWarpClasses + c.warp),
                 value != 0)) {
     return 0;
   }
   const bool negative = sink.bit(
-      contexts_of(kCoefficientSign, {base, base * 3 + f, base * 2 + big, base}, 0), value < 0);
+      contexts_of(kCoefficientSign, {base, base * 3 + f, base * 2 + big, base}, 0, c.guided,
+                  base * 4 + from, base * kTrustClasses + c.trust),
+      value < 0);
   const std::uint32_t magnitude = code_magnitude(
       sink, FieldPart::coefficients, static_cast<std::uint32_t>(std::abs(value)) - (value != 0),
       [&](std::uint32_t at, bool bit) {
         return sink.bit(
             contexts_of(kCoefficientClass,
                         {base * 24 + at, (f * 6 + c.size) * 24 + at, (k * 4 + e) * 24 + at, at},
-                        fresh ? 1 : 0),
+                        fresh ? 1 : 0, c.guided, (base * 24 + at) * 4 + from,
+                        (c.size * 24 + at) * kTrustClasses + c.trust),
             bit);
       },
       [&](std::uint32_t size, bool bit) {
         return sink.bit(
-            contexts_of(kCoefficientBits, {size, size * 2 + fresh, size * 6 + k, size}, 0), bit);
+            contexts_of(kCoefficientBits, {size, size * 2 + fresh, size * 6 + k, size}, 0, c.guided,
+                        size * 4 + from, size * kTrustClasses + c.trust),
+            bit);
       });
   const auto steps =
       static_cast<std::int32_t>(std::min<std::uint32_t>(magnitude + 1, kMaxQuantised));
@@ -189,19 +217,23 @@ void code_layer(Sink& sink, const BlockContext& c, std::uint32_t layers, std::ui
                              {s, s * 20 + n * 5 + c.spread,
                               s * 6 + std::min(layers - 1, 2u) * 2 + (used_parents != 0 ? 1u : 0u),
                               s * 16 + c.left_depth * 4 + c.above_depth},
-                             late),
+                             late, c.guided, s * kWarpClasses + c.warp,
+                             (s * kTrustClasses + c.trust) * 4 + std::min(used_parents & 3, 3u)),
                  layer.parent == 0);
     if (fresh) {
       layer.parent = 0;
     } else {
       std::uint32_t k = 0;
       for (; k + 1 < count; ++k) {
-        const std::uint32_t at = (k * 6 + count - 1) * 2 + late;
+        // Of predicted scans, whose first two parents may be the guide's, k + 1 is at most 6.
+        const std::uint32_t at = (k * (c.guided ? 7 : 6) + count - 1) * 2 + late;
         const std::uint32_t used = used_parents >> k & 1;
         if (sink.bit(contexts_of(kParent,
                                  {at, at * 2 + used, at * 5 + c.spread,
                                   (c.parent_functions[k] * 3 + std::min(k, 2u)) * 2 + used},
-                                 std::min(k, 2u) * 2 + late),
+                                 std::min(k, 2u) * 2 + late, c.guided, at * kWarpClasses + c.warp,
+                                 ((std::min(k, 3u) * kTrustClasses + c.trust) * 16 +
+                                  (used_parents & 15)) * 2 + late),
                      layer.parent == k + 1)) {
           break;
         }
@@ -210,6 +242,7 @@ void code_layer(Sink& sink, const BlockContext& c, std::uint32_t layers, std::ui
     }
   }
   const bool fresh = layer.parent == 0;
+  const std::uint32_t from = c.kind_of(layer.parent);
   const std::uint32_t inherited = fresh ? 0 : c.parent_functions[layer.parent - 1];
   // A new surface has its constant already.
   std::uint32_t functions = fresh ? 1 : 0;
@@ -218,7 +251,9 @@ void code_layer(Sink& sink, const BlockContext& c, std::uint32_t layers, std::ui
     if (!sink.bit(
             contexts_of(kFunctionCount,
                         {at, at * 4 + inherited, at * 4 + c.few, at * 3 + std::min(layers - 1, 2u)},
-                        functions * 2 + (fresh ? 1u : 0u)),
+                        functions * 2 + (fresh ? 1u : 0u), c.guided,
+                        (at * 4 + from) * kTrustClasses + c.trust,
+                        (functions * 4 + from) * kWarpClasses + c.warp),
             functions < layer.functions)) {
       break;
     }
@@ -227,7 +262,8 @@ void code_layer(Sink& sink, const BlockContext& c, std::uint32_t layers, std::ui
   if (fresh) layer.range_steps = code_range_steps(sink, c, index, layer.range_steps);
   std::uint32_t energy = 0;
   for (std::uint32_t k = fresh ? 1 : 0; k < kFunctions[functions]; ++k) {
-    layer.q[k] = code_coefficient(sink, c, fresh, index, functions, k, energy, layer.q[k]);
+    layer.q[k] =
+        code_coefficient(sink, c, layer.parent, index, functions, k, energy, layer.q[k]);
     energy += static_cast<std::uint32_t>(std::min(std::abs(layer.q[k]), 8));
   }
 }
@@ -242,7 +278,8 @@ void code_leaf(Sink& sink, const BlockContext& c, std::uint32_t returns, LeafCod
     if (!sink.bit(contexts_of(kLayerCount,
                               {at, at * 16 + c.left_depth * 4 + c.above_depth,
                                at * 15 + c.filled * 5 + c.spread, at * 3 + c.filled},
-                              layers - 1),
+                              layers - 1, c.guided, at * kWarpClasses + c.warp,
+                              at * kTrustClasses + c.trust),
                   layers < leaf.layers)) {
       break;
     }
@@ -280,6 +317,17 @@ struct LabelContext {
   std::uint32_t nearer = 0;          ///< `first` is 0 the farthest, 1 between, 2 the nearest layer
   std::uint32_t run = 0;             ///< class of how long W-ward cells are on `first`, 0..3
   std::uint32_t rise = 0;            ///< class of how long N-ward cells are on `first`, 0..3
+  bool guided = false;
+  /// Of predicted scans: the layer nearest to the guide's range (kMaxLayers: it has none), and
+  /// whether it is so by far.
+  std::uint32_t warped = kMaxLayers;
+  bool clear = false;
+
+  /// What the guide says of a layer: 0 nothing, 1 and 2 this one, 3 and 4 another; by far.
+  std::uint32_t guess(std::uint32_t layer) const {
+    if (warped == kMaxLayers) return 0;
+    return (warped == layer ? 1 : 3) + (clear ? 1 : 0);
+  }
 };
 
 /// Predicted ranges of a cell by layer.
@@ -295,6 +343,7 @@ class LabelContexts {
 
  private:
   std::uint32_t layer_at(std::int64_t row, std::int64_t column, const LayerRanges& ranges) const;
+  void add_guess(std::uint32_t cell, const LayerRanges& ranges, LabelContext& context) const;
 
   const FieldState& state_;
   Block block_;
@@ -312,7 +361,9 @@ std::uint32_t code_label(Sink& sink, const LabelContext& c, std::uint32_t layers
                            {(c.pattern * 2 + known) * 3 + n,
                             ((c.gap > 5 ? 5 : c.gap) * 3 + c.nearer) * 27 + c.pattern,
                             c.pattern * 27 + c.wide_pattern, (c.run * 4 + c.rise) * 3 + c.nearer},
-                           n * 3 + w),
+                           n * 3 + w, c.guided,
+                           ((c.pattern * 2 + known) * 3 + n) * 5 + c.guess(c.first),
+                           (std::min(c.gap, 5u) * 3 + c.nearer) * 5 + c.guess(c.first)),
                label == c.first)) {
     return c.first;
   }
@@ -324,7 +375,8 @@ std::uint32_t code_label(Sink& sink, const LabelContext& c, std::uint32_t layers
     if (sink.bit(contexts_of(kLabelSecond,
                              {c.second_pattern * 3 + n, c.second_pattern * 2 + m,
                               c.pattern * 3 + c.nearer, (c.gap * 3 + c.nearer) * 4 + c.run},
-                             n),
+                             n, c.guided, (c.second_pattern * 3 + n) * 5 + c.guess(second),
+                             c.gap * 5 + c.guess(second)),
                  label == second)) {
       return second;
     }
@@ -334,7 +386,9 @@ std::uint32_t code_label(Sink& sink, const LabelContext& c, std::uint32_t layers
     if (k == c.first || static_cast<std::int32_t>(k) == c.second) continue;
     if (left == 1) return k;
     const std::uint32_t at = (n * 2 + (left - 2)) * 4 + k;
-    if (sink.bit(contexts_of(kLabelRest, {at, at, c.nearer, at}, 0), label == k)) return k;
+    if (sink.bit(contexts_of(kLabelRest, {at, at, c.nearer, at}, 0, c.guided, at * 5 + c.guess(k),
+                             c.guess(k)),
+                 label == k)) return k;
     --left;
   }
   return c.first;

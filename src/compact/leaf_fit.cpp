@@ -59,8 +59,8 @@ std::int32_t round_with_dead_zone(double x, double bias) {
 
 }  // namespace
 
-LeafSamples::LeafSamples(const FieldState& state, const PatchFrame& frame,
-                         const std::vector<std::int32_t>& truth,
+LeafSamples::LeafSamples(const FieldState& state, const BlockContext& context,
+                         const PatchFrame& frame, const std::vector<std::int32_t>& truth,
                          std::vector<std::uint32_t> of_cells)
     : cells(std::move(of_cells)) {
   for (const std::uint32_t cell : cells) {
@@ -71,6 +71,10 @@ LeafSamples::LeafSamples(const FieldState& state, const PatchFrame& frame,
     weights.push_back(metres * metres * (metres * metres));
     const Sight& sight = sights.back();
     basis.push_back(basis_at(frame, apparent(sight, truth[cell]), sight.direction));
+    if (context.warp == 0) continue;
+    Surface guide{context.parent_plane[0], {}, false, true, {}};
+    warped.push_back(static_cast<double>(kRangeUnit) /
+                     static_cast<double>(state.range_in(guide, frame, cell)));
   }
 }
 
@@ -86,6 +90,7 @@ LayerFit::LayerFit(const FieldState& state, const BlockContext& context, const P
     for (std::uint32_t a = 0; a < kMaxFunctions; ++a) {
       const double weighted = weight * basis[a];
       moment_[a] += weighted * target;
+      if (!samples.warped.empty()) warped_moment_[a] += weighted * samples.warped[i];
       for (std::uint32_t b = 0; b <= a; ++b) gram_[a][b] += weighted * basis[b];
     }
   }
@@ -140,12 +145,14 @@ std::optional<LayerCode> LayerFit::fit(std::uint32_t parent, std::uint32_t funct
   if (kFunctions[functions] <= first) return layer;
   const LayerBase start = base_of(state_, context_, frame_, layer);
   const std::uint32_t n = kFunctions[functions] - first;
-  const Vector base = in_basis(start.plane);
+  const bool warped = context_.kind_of(parent) == 2;
+  const Vector base = warped ? Vector{} : in_basis(start.plane);
   Matrix gram{};
   Vector y{}, c{};
   double trace = 0;
   for (std::uint32_t a = 0; a < n; ++a) {
     y[a] = moment_[a + first];
+    if (warped) y[a] -= warped_moment_[a + first];
     for (std::uint32_t b = 0; b < 3; ++b) y[a] -= gram_[a + first][b] * base[b];
     for (std::uint32_t b = 0; b <= a; ++b) gram[a][b] = gram_[a + first][b + first];
     trace += gram[a][a];

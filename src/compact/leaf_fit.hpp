@@ -18,10 +18,11 @@ struct LeafSamples {
   std::vector<Sight> sights;
   std::vector<std::int64_t> ranges;                      ///< Q16
   std::vector<double> inverse;                           ///< 1 / r in 1/m
+  std::vector<double> warped;                            ///< of predicted scans: 1 / guide's range
   std::vector<double> weights;                           ///< r^4 in metres
   std::vector<std::array<double, kMaxFunctions>> basis;  ///< B0..B5
 
-  LeafSamples(const FieldState& state, const PatchFrame& frame,
+  LeafSamples(const FieldState& state, const BlockContext& context, const PatchFrame& frame,
               const std::vector<std::int32_t>& truth, std::vector<std::uint32_t> of_cells);
   std::size_t size() const { return cells.size(); }
 };
@@ -54,7 +55,8 @@ class LayerFit {
   const LeafSamples& samples_;
   const std::vector<std::uint32_t>& members_;
   Matrix gram_{};
-  Vector moment_{};  ///< of the inverse range
+  Vector moment_{};         ///< of the inverse range
+  Vector warped_moment_{};  ///< of that of the guide
   std::optional<std::int64_t> median_;
 };
 

@@ -33,7 +33,7 @@ class LeafSearch {
         settings_(settings),
         context_(context),
         frame_(state.geometry, state.shape(context.block), context.block),
-        samples_(state, frame_, truth, state.cells_of(context.block)),
+        samples_(state, context, frame_, truth, state.cells_of(context.block)),
         sink_(costs) {}
 
   std::int64_t run(Node& node) {
@@ -58,7 +58,7 @@ class LeafSearch {
     const Surface surface = surface_of(state_, context_, frame_, code);
     std::vector<std::int32_t> ranges(samples_.size());
     for (std::size_t i = 0; i < ranges.size(); ++i) {
-      ranges[i] = static_cast<std::int32_t>(surface.range_at(frame_, samples_.sights[i]));
+      ranges[i] = static_cast<std::int32_t>(state_.range_in(surface, frame_, samples_.cells[i]));
     }
     return ranges;
   }
@@ -171,7 +171,7 @@ std::int64_t LeafSearch::cost_of_one(const LayerCode& layer) {
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     if (plain >= best_ && refined >= best_) return best_;
     const std::int64_t e =
-        error(i, static_cast<std::int32_t>(surface.range_at(frame_, samples_.sights[i])));
+        error(i, static_cast<std::int32_t>(state_.range_in(surface, frame_, samples_.cells[i])));
     plain += error_cost(e, false);
     if (has_residual) refined += error_cost(e, true);
   }
@@ -236,7 +236,8 @@ std::optional<FittedLayer> LeafSearch::best_layer(const Members& members, std::u
       for (const std::uint32_t i : members) {
         if (cost >= least) break;
         cost +=
-            256 * error(i, static_cast<std::int32_t>(surface.range_at(frame_, samples_.sights[i])));
+            256 * error(i, static_cast<std::int32_t>(
+                               state_.range_in(surface, frame_, samples_.cells[i])));
       }
       if (cost >= least) continue;
       least = cost;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "compact/mask_guide.hpp"
 #include "compact/mask_model.hpp"
 #include "compact/mask_priors.hpp"
 #include "entropy/range_coder.hpp"
@@ -10,11 +11,25 @@
 namespace curlidar::compact {
 namespace {
 
-MaskModel start(const MaskLearning& learning) {
+template <class Model>
+Model start(const MaskLearning& learning, const Model& priors) {
   if (!learning.priors) return {};
-  MaskModel model = mask_priors();
+  Model model = priors;
   model.doubt(learning.trust);
   return model;
+}
+
+/// One walk for writing and reading, with a guide or without.
+template <class Coder, class Cell, class RowDone>
+void code_rows(Coder& coder, const MaskLearning& learning, const MaskShape& shape,
+               const Guide* guide, Cell* cells, const RowDone& row_done) {
+  if (guide == nullptr) {
+    MaskModel model = start(learning, mask_priors());
+    code_mask(coder, model, shape, learning.rate, cells, row_done);
+    return;
+  }
+  GuidedMaskModel model = start(learning, guided_mask_priors());
+  code_guided_mask(coder, model, MaskHints(*guide, shape), shape, learning.rate, cells, row_done);
 }
 
 /// Codes which way of learning follows.
@@ -26,11 +41,10 @@ std::size_t code_learning(Coder& coder, std::size_t way) {
 }
 
 std::vector<std::byte> encode(std::span<const std::uint8_t> occupied, const MaskShape& shape,
-                              std::size_t way) {
+                              std::size_t way, const Guide* guide) {
   RangeEncoder coder;
   code_learning(coder, way);
-  MaskModel model = start(kMaskLearning[way]);
-  code_mask(coder, model, shape, kMaskLearning[way].rate, occupied.data(),
+  code_rows(coder, kMaskLearning[way], shape, guide, occupied.data(),
             [](std::size_t) { return true; });
   return std::move(coder).finish();
 }
@@ -38,25 +52,24 @@ std::vector<std::byte> encode(std::span<const std::uint8_t> occupied, const Mask
 }  // namespace
 
 std::vector<std::byte> encode_mask(std::span<const std::uint8_t> occupied, const MaskShape& shape,
-                                   bool thorough) {
+                                   bool thorough, const Guide* guide) {
   if (shape.rows == 0 || shape.columns == 0) return {};
-  std::vector<std::byte> best = encode(occupied, shape, 0);
+  std::vector<std::byte> best = encode(occupied, shape, 0, guide);
   for (std::size_t way = 1; thorough && way < kMaskLearning.size(); ++way) {
-    std::vector<std::byte> other = encode(occupied, shape, way);
+    std::vector<std::byte> other = encode(occupied, shape, way, guide);
     if (other.size() < best.size()) best = std::move(other);
   }
   return best;
 }
 
 std::size_t decode_mask(ByteSpan bytes, const MaskShape& shape, bool whole,
-                        std::span<std::uint8_t> occupied) {
+                        std::span<std::uint8_t> occupied, const Guide* guide) {
   if (shape.rows == 0 || shape.columns == 0) return shape.rows;
   std::fill(occupied.begin(), occupied.end(), std::uint8_t{0});
   RangeDecoder coder(bytes);
   const MaskLearning& learning = kMaskLearning[code_learning(coder, 0)];
-  MaskModel model = start(learning);
   std::size_t sure = 0;
-  code_mask(coder, model, shape, learning.rate, occupied.data(), [&](std::size_t row) {
+  code_rows(coder, learning, shape, guide, occupied.data(), [&](std::size_t row) {
     const bool known = whole ? !coder.exhausted() : !coder.finished();
     if (known) sure = row + 1;
     return known;

@@ -95,23 +95,36 @@ bool MaskModel::code(Coder& coder, const MaskWindow& window, std::uint32_t scale
   return occupied;
 }
 
-/// Codes rows of a mask from the top until `row_done(row)` says no. Cells are read or written.
-template <class Coder, class Cell, class RowDone>
-void code_mask(Coder& coder, MaskModel& model, const MaskShape& shape, std::int32_t rate,
-               Cell* cells, RowDone&& row_done) {
+/// Goes over the rows of a mask from the top until `row_done(row)` says no, and calls
+/// `code_cell(window, row, column, bit)` for every cell. Cells are read or written.
+template <bool kDecodes, class Cell, class CodeCell, class RowDone>
+void walk_mask(const MaskShape& shape, Cell* cells, const CodeCell& code_cell,
+               RowDone&& row_done) {
   MaskScan scan(shape);
-  const std::uint32_t scale = mask_scale(shape.turn_columns);
   for (std::size_t row = 0; row < shape.rows; ++row) {
     scan.begin_row();
     for (std::size_t column = 0; column < shape.columns; ++column, ++cells) {
       scan.begin_cell();
-      const bool bit = !Coder::kDecodes && *cells != 0;
-      const bool occupied = model.code(coder, scan.window(), scale, rate, bit);
-      if constexpr (Coder::kDecodes) *cells = occupied;
+      const bool bit = !kDecodes && *cells != 0;
+      const bool occupied = code_cell(scan.window(), row, column, bit);
+      if constexpr (kDecodes) *cells = occupied;
       scan.end_cell(occupied);
     }
     if (!row_done(row)) return;
   }
+}
+
+/// Codes rows of a mask, as walk_mask goes over them.
+template <class Coder, class Cell, class RowDone>
+void code_mask(Coder& coder, MaskModel& model, const MaskShape& shape, std::int32_t rate,
+               Cell* cells, RowDone&& row_done) {
+  const std::uint32_t scale = mask_scale(shape.turn_columns);
+  walk_mask<Coder::kDecodes>(
+      shape, cells,
+      [&](const MaskWindow& window, std::size_t, std::size_t, bool bit) {
+        return model.code(coder, window, scale, rate, bit);
+      },
+      row_done);
 }
 
 }  // namespace curlidar::compact

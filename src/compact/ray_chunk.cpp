@@ -267,6 +267,22 @@ Status read_inline_front(const ScanChunkView& chunk, ByteReader& reader, std::ui
                     "the range unit is missing or out of range");
 }
 
+/// Firings and motion, and what may be wrong of them.
+Status read_times(const ScanChunkView& chunk, RangeDecoder& decoder, std::uint32_t flags,
+                  std::uint32_t columns, bool good, RayTable& rays) {
+  good = good && read_firings(decoder, columns, rays.slots, rays.firings);
+  if (const std::size_t parts = motion_parts(flags); good && parts > 0) {
+    good = code_motion(decoder, parts, rays) && !rays.motion.none();
+  }
+  const auto corrupt = [&](std::string_view what) {
+    return scan_error(ErrorCode::corrupt, chunk.part, chunk.offset, what);
+  };
+  if (decoder.exhausted()) return corrupt("the payload ends inside the rays");
+  if (!good) return corrupt("a number of the rays is out of range");
+  if (!decoder.finished()) return corrupt("unexpected bytes at the end");
+  return {};
+}
+
 }  // namespace
 
 Status check_rays(const RowTable& table, std::uint32_t rows, std::uint32_t columns) {
@@ -343,15 +359,44 @@ Status read_rays(const ScanChunkView& chunk, std::uint32_t rows, std::uint32_t c
   CURLIDAR_TRY(frozen ? read_frozen_front(chunk, reader, flags, rows, table)
                       : read_inline_front(chunk, reader, flags, rays));
   RangeDecoder decoder(chunk.payload.subspan(reader.offset()));
-  bool good = frozen || read_beams(decoder, rows, table);
-  good = good && read_firings(decoder, columns, rays.slots, rays.firings);
-  if (const std::size_t parts = motion_parts(flags); good && parts > 0) {
-    good = code_motion(decoder, parts, rays) && !rays.motion.none();
+  const bool good = frozen || read_beams(decoder, rows, table);
+  return read_times(chunk, decoder, flags, columns, good, rays);
+}
+
+std::vector<std::byte> write_firings_only(const RowTable& table) {
+  RayTable rays = *table.rays;
+  const std::uint32_t flags = flags_of(rays) & (kMoved | kFullMotion);
+  ByteWriter writer;
+  writer.write(static_cast<std::uint8_t>(flags));
+  RangeEncoder encoder;
+  write_firings(encoder, rays.firings, rays.slots);
+  if (const std::size_t parts = motion_parts(flags); parts > 0) code_motion(encoder, parts, rays);
+  writer.write_bytes(std::move(encoder).finish());
+  return std::move(writer).bytes();
+}
+
+Status read_firings_only(const ScanChunkView& chunk, std::uint32_t columns, RowTable& table) {
+  const auto fault = [&](ErrorCode code, std::string_view what) {
+    return scan_error(code, chunk.part, chunk.offset, what);
+  };
+  if (chunk.payload.empty()) return fault(ErrorCode::corrupt, "the payload is empty");
+  const auto flags = static_cast<std::uint32_t>(chunk.payload[0]);
+  if ((flags & ~(kMoved | kFullMotion)) != 0) {
+    return fault(ErrorCode::unsupported,
+                 "flags of a later version; use a newer release of curlidar");
   }
-  if (decoder.exhausted()) return fault(ErrorCode::corrupt, "the payload ends inside the rays");
-  if (!good) return fault(ErrorCode::corrupt, "a number of the rays is out of range");
-  if (!decoder.finished()) return fault(ErrorCode::corrupt, "unexpected bytes at the end");
-  return {};
+  if ((flags & kFullMotion) != 0 && (flags & kMoved) == 0) {
+    return fault(ErrorCode::corrupt, "flags that do not go together");
+  }
+  if (table.turn_columns != columns || table.first_column != 0) {
+    return fault(ErrorCode::corrupt, "the image is not a whole turn of firings");
+  }
+  RayTable& rays = *table.rays;
+  rays.motion = {};
+  rays.turn_shift = rays.move_shift = 0;
+  rays.firings.clear();
+  RangeDecoder decoder(chunk.payload.subspan(1));
+  return read_times(chunk, decoder, flags, columns, true, rays);
 }
 
 }  // namespace curlidar::compact

@@ -27,6 +27,11 @@ bool use_beam_table(std::uint32_t number, RowTable& table);
 /// Writes rays and elevations of a table that check_rays() finds right.
 std::vector<std::byte> write_rays(const RowTable& table);
 
+/// Firings and motion alone, of a table whose beams the reader has.
+std::vector<std::byte> write_firings_only(const RowTable& table);
+/// Reads those into a table with beams.
+Status read_firings_only(const ScanChunkView& chunk, std::uint32_t columns, RowTable& table);
+
 /// Fills `rays` and `elevation`; `rows` and `columns` have been checked against the limits. Errors:
 /// corrupt, unsupported (flags or a beam table of a later version).
 Status read_rays(const ScanChunkView& chunk, std::uint32_t rows, std::uint32_t columns,

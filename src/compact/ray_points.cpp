@@ -8,9 +8,6 @@
 namespace curlidar::compact {
 namespace {
 
-/// A rotation vector in Q30 radians.
-using Turn = std::array<std::int64_t, 3>;
-
 constexpr std::int64_t kTerms = 10;
 
 std::int64_t limited(std::int64_t coordinate) {
@@ -33,7 +30,13 @@ FixedPoint cross(const Turn& w, const FixedPoint& p) {
   return {part(w[1], p.z, w[2], p.y), part(w[2], p.x, w[0], p.z), part(w[0], p.y, w[1], p.x)};
 }
 
-/// R(w) p = p + w x (p + w/2 x (p + w/3 x (...))).
+/// t, in 2^-32 m.
+std::int64_t along_ray(const Ray& ray, std::int64_t range) {
+  return range + std::int64_t{ray.range_phase} * 65536;
+}
+
+}  // namespace
+
 FixedPoint turned(const Turn& w, const FixedPoint& p) {
   FixedPoint result = p;
   for (std::int64_t k = kTerms; k > 0; --k) {
@@ -43,13 +46,6 @@ FixedPoint turned(const Turn& w, const FixedPoint& p) {
   }
   return result;
 }
-
-/// t, in 2^-32 m.
-std::int64_t along_ray(const Ray& ray, std::int64_t range) {
-  return range + std::int64_t{ray.range_phase} * 65536;
-}
-
-}  // namespace
 
 std::int64_t exact_range(std::int32_t range, std::uint64_t unit_q48) {
   if (unit_q48 == 0) return std::int64_t{range} * 65536;

@@ -2,6 +2,7 @@
 // Points along a sensor's own rays, in integers: the formulas of ray_table.hpp.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -12,6 +13,12 @@ namespace curlidar::compact {
 
 /// No coordinate is further out, in Q36 metres: 65 km. Doubles hold all integers up to it.
 inline constexpr std::int64_t kFarthestQ36 = std::int64_t{1} << 52;
+
+/// A rotation vector in Q30 radians.
+using Turn = std::array<std::int64_t, 3>;
+
+/// R(w) p = p + w x (p + w/2 x (p + w/3 x (...))), ten terms.
+FixedPoint turned(const Turn& w, const FixedPoint& p);
 
 /// A range of 1..2^30 Q16 metres in 2^-32 m: 2^16 times it or, if there is a unit (2^-48 m), the
 /// multiple nearest to it: round(round(2^32 range / unit) unit / 2^16).

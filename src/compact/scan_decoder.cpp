@@ -9,6 +9,8 @@
 
 #include "base/parallel.hpp"
 #include "base/try.hpp"
+#include "compact/prediction.hpp"
+#include "compact/prediction_chunk.hpp"
 #include "compact/ray_chunk.hpp"
 #include "compact/scan_header.hpp"
 #include "compact/scan_segment.hpp"
@@ -185,6 +187,48 @@ void crop(const Region& region, DecodedScan& out) {
   }
 }
 
+/// Whether what a scan is predicted from is there.
+Status check_reference(const PredictionHeader& prediction, const DecodedScan* reference) {
+  if (reference == nullptr) {
+    return Error{ErrorCode::invalid_argument,
+                 "the scan is predicted from another one, without which it cannot be decoded: "
+                 "decode it as a part of its sequence"};
+  }
+  if (!reference->missing.empty() || fingerprint_of(*reference) != prediction.reference) {
+    return Error{ErrorCode::corrupt, "the scan is predicted from another one than the given"};
+  }
+  return {};
+}
+
+/// Fills the table of a scan with the rows of its reference.
+Status take_rows(const ScanChunks& chunks, const PredictionHeader& prediction,
+                 const DecodedScan& reference, ScanHeader& header) {
+  const ScanParameters& p = header.parameters;
+  const auto fault = [](const char* what) { return Error{ErrorCode::corrupt, what}; };
+  if (find(chunks, ScanPart::sensor) != nullptr || reference.parameters.rows != p.rows) {
+    return fault("the rows of a predicted scan are not those of its reference");
+  }
+  const std::uint32_t turn_columns = header.table.turn_columns,
+                      first_column = header.table.first_column;
+  header.table = reference.table;
+  header.table.turn_columns = turn_columns;
+  header.table.first_column = first_column;
+  const bool own_times = header.table.rays && !prediction.same_firings;
+  if (!own_times && find(chunks, ScanPart::rays) != nullptr) {
+    return fault("rays of a predicted scan that has none of its own");
+  }
+  if (own_times) {
+    CURLIDAR_TRY_ASSIGN(rays, require(chunks, ScanPart::rays));
+    return read_firings_only(rays, p.columns, header.table);
+  }
+  if (prediction.same_firings &&
+      (p.columns != reference.parameters.columns || turn_columns != reference.table.turn_columns ||
+       first_column != reference.table.first_column)) {
+    return fault("the columns of a predicted scan are not those of its reference");
+  }
+  return {};
+}
+
 std::vector<DecodedSegment> wanted_segments(const ScanParameters& parameters,
                                             const std::optional<Region>& region) {
   std::vector<DecodedSegment> segments;
@@ -212,9 +256,20 @@ std::string to_string(const Missing& m) {
                      m.place.column + m.place.columns - 1, from);
 }
 
-Result<ScanHeader> decode_scan_header(const ScanChunks& chunks, const ScanLimits& limits) {
+Result<ScanHeader> decode_scan_header(const ScanChunks& chunks, const ScanLimits& limits,
+                                      const DecodedScan* reference) {
   CURLIDAR_TRY_ASSIGN(parameters, require(chunks, ScanPart::parameters));
   CURLIDAR_TRY_ASSIGN(header, read_parameters(parameters, limits));
+  if (find(chunks, ScanPart::prediction) != nullptr) {
+    CURLIDAR_TRY_ASSIGN(chunk, require(chunks, ScanPart::prediction));
+    CURLIDAR_TRY_ASSIGN(prediction, read_prediction(chunk));
+    CURLIDAR_TRY(check_reference(prediction, reference));
+    header.prediction = prediction;
+    if (prediction.same_rows) {
+      CURLIDAR_TRY(take_rows(chunks, prediction, *reference, header));
+      return header;
+    }
+  }
   CURLIDAR_TRY_ASSIGN(rows, require(chunks, ScanPart::sensor));
   CURLIDAR_TRY(read_rows(rows, header.parameters.rows, header.table));
   if (const ScanChunkView* rays = find(chunks, ScanPart::rays);
@@ -231,7 +286,7 @@ Result<ScanHeader> decode_scan_header(const ScanChunks& chunks, const ScanLimits
 
 Result<DecodedScan> decode_scan(const ScanChunks& chunks, const ScanLimits& limits,
                                 const ScanOptions& options) {
-  CURLIDAR_TRY_ASSIGN(header, decode_scan_header(chunks, limits));
+  CURLIDAR_TRY_ASSIGN(header, decode_scan_header(chunks, limits, options.reference));
   DecodedScan out;
   out.parameters = header.parameters;
   out.table = std::move(header.table);
@@ -239,6 +294,11 @@ Result<DecodedScan> decode_scan(const ScanChunks& chunks, const ScanLimits& limi
   CURLIDAR_TRY_ASSIGN(views, segment_views(chunks, out.parameters, out.segments.size()));
   CURLIDAR_TRY(check_mask_sizes(out.segments, views[0]));
 
+  std::optional<Prediction> prediction;
+  if (header.prediction) {
+    prediction = predict(*options.reference, header.prediction->pose, out.table,
+                         out.parameters.rows, out.parameters.columns);
+  }
   const std::size_t parts = options.field_only ? 2 : parts_of(out.parameters);
   const auto residual_of = [&](std::size_t i) {
     return parts > 2 ? chunk_of(views[2], i) : SegmentChunk{};
@@ -248,7 +308,8 @@ Result<DecodedScan> decode_scan(const ScanChunks& chunks, const ScanLimits& limi
     if (!out.segments[i].wanted) return;
     scans[i] =
         decode_segment(out.table, out.parameters, out.segments[i].place, chunk_of(views[0], i),
-                       chunk_of(views[1], i), residual_of(i), options.keep_nodes);
+                       chunk_of(views[1], i), residual_of(i), options.keep_nodes,
+                       prediction ? &*prediction : nullptr);
   });
 
   const std::size_t cells = std::size_t{out.parameters.rows} * out.parameters.columns;
@@ -268,6 +329,10 @@ Result<DecodedScan> decode_scan(const ScanChunks& chunks, const ScanLimits& limi
     scans[i] = {};
   }
   if (options.region) crop(*options.region, out);
+  if (prediction) {
+    out.guide_planes = std::move(prediction->planes);
+    out.guide_source = std::move(prediction->source);
+  }
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compact/field_code.hpp"
+#include "compact/relative_pose.hpp"
 #include "compact/scan_types.hpp"
 #include "curlidar/result.hpp"
 
@@ -28,11 +29,14 @@ struct Region {
   std::uint32_t column_begin = 0, column_end = UINT32_MAX;
 };
 
+struct DecodedScan;
+
 struct ScanOptions {
   bool field_only = false;       ///< leave the residual layer out
   std::optional<Region> region;  ///< only segments that touch it are read; cells outside stay empty
   bool keep_nodes = false;       ///< keep the partition of each segment
   std::size_t threads = 0;       ///< 0 = all cores
+  const DecodedScan* reference = nullptr;  ///< whole: what a predicted scan is predicted from
 };
 
 /// The chunks of a file as an opener finds them.
@@ -47,6 +51,16 @@ struct DecodedLeaf {
   std::uint32_t first_surface = 0;  ///< in DecodedScan::surfaces
   std::uint32_t layers = 1;
   bool has_residual = false;
+};
+
+/// How a scan is predicted: the motion since its reference, and what it shares with it.
+struct PredictionHeader {
+  RelativePose pose;
+  bool same_rows = false;     ///< elevations, heights, range offsets and rays are the reference's
+  bool same_firings = false;  ///< so are columns, firings and motion; only with same_rows
+  std::uint16_t reference = 0;  ///< fingerprint of the reference
+
+  friend bool operator==(const PredictionHeader&, const PredictionHeader&) = default;
 };
 
 struct DecodedSegment {
@@ -82,6 +96,9 @@ struct DecodedScan {
   /// With blocks relative to their segments, whose geometry_of() evaluates them; they give
   /// range - range_offset.
   std::vector<PlacedSurface> surfaces;
+  /// Of predicted scans: what warped surfaces lie over in each cell, as Prediction; else empty.
+  std::vector<Plane> guide_planes;
+  std::vector<std::int32_t> guide_source;
   std::vector<DecodedLeaf> leaves;
   std::vector<DecodedSegment> segments;
   std::vector<Missing> missing;  ///< empty: all that was asked for is here
@@ -91,8 +108,19 @@ struct DecodedScan {
 struct ScanHeader {
   ScanParameters parameters;
   RowTable table;
+  std::optional<PredictionHeader> prediction{};  ///< of predicted scans
 };
-Result<ScanHeader> decode_scan_header(const ScanChunks& chunks, const ScanLimits& limits = {});
+/// `reference` as ScanOptions has it.
+Result<ScanHeader> decode_scan_header(const ScanChunks& chunks, const ScanLimits& limits = {},
+                                      const DecodedScan* reference = nullptr);
+
+/// The surface of a cell that has one, as it is in this cell.
+inline Surface surface_in(const DecodedScan& scan, std::size_t cell) {
+  const Surface& surface = scan.surfaces[static_cast<std::size_t>(scan.surface[cell])].surface;
+  if (!surface.warped || scan.guide_source[cell] < 0) return surface;
+  return on_plane_of(surface,
+                     scan.guide_planes[static_cast<std::size_t>(scan.guide_source[cell])]);
+}
 
 /// Decodes what is there. Integers only: the same on every machine and for any number of threads.
 /// Any bytes decode to something or to an error: corrupt (a chunk too many, or too few in a

@@ -9,6 +9,7 @@
 
 #include "base/parallel.hpp"
 #include "base/try.hpp"
+#include "compact/prediction_chunk.hpp"
 #include "compact/ray_chunk.hpp"
 #include "compact/scan_header.hpp"
 #include "compact/scan_segment.hpp"
@@ -142,7 +143,7 @@ void add_segment_chunks(std::vector<EncodedSegment>& segments, bool residual, bo
 /// Counts the small chunks and the frames of all.
 void count_frames(EncodedScan& out) {
   for (const ScanChunk& chunk : out.chunks) {
-    const bool small = chunk.part < ScanPart::mask || chunk.part == ScanPart::rays;
+    const bool small = chunk.part < ScanPart::mask || chunk.part > ScanPart::residual;
     out.breakdown.header += 8 * static_cast<double>(frame_size(chunk.payload.size()) +
                                                     (small ? chunk.payload.size() : 0));
   }
@@ -167,7 +168,7 @@ Result<EncodedScan> encode_scan(const Image& image, const RowTable& table,
   const std::vector<SegmentPlace> places = segments_of(parameters);
   std::vector<EncodedSegment> segments(places.size());
   parallel_for(places.size(), settings.threads, [&](std::size_t i) {
-    segments[i] = encode_segment(image, table, parameters, places[i], effort);
+    segments[i] = encode_segment(image, table, parameters, places[i], effort, settings.prediction);
   });
 
   EncodedScan out;
@@ -178,8 +179,14 @@ Result<EncodedScan> encode_scan(const Image& image, const RowTable& table,
     count_segment(segments[i], places[i], out);
   }
   out.chunks.push_back({ScanPart::parameters, write_parameters(parameters, table)});
-  out.chunks.push_back({ScanPart::sensor, write_rows(table)});
-  if (table.rays) out.chunks.push_back({ScanPart::rays, write_rays(table)});
+  if (settings.prediction != nullptr) {
+    out.chunks.push_back({ScanPart::prediction, write_prediction(*settings.header)});
+  }
+  const bool shared = settings.prediction != nullptr && settings.header->same_rows;
+  if (!shared) out.chunks.push_back({ScanPart::sensor, write_rows(table)});
+  if (table.rays && !(shared && settings.header->same_firings)) {
+    out.chunks.push_back({ScanPart::rays, shared ? write_firings_only(table) : write_rays(table)});
+  }
   add_segment_chunks(segments, parameters.residual_step > 0, settings.index && places.size() > 1,
                      out.chunks);
   count_frames(out);

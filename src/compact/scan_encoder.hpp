@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compact/field_syntax.hpp"
+#include "compact/prediction.hpp"
 #include "compact/scan_effort.hpp"
 #include "compact/scan_types.hpp"
 #include "curlidar/result.hpp"
@@ -25,6 +26,9 @@ struct ScanSettings {
   std::uint32_t bands = 0, sectors = 0;
   bool index = true;        ///< false also means one segment where bands and sectors are 0
   std::size_t threads = 0;  ///< 0 = all cores; any number gives the same bytes
+  /// What a scan before makes expect, and what the file says of it; null: nothing. The image's size.
+  const Prediction* prediction = nullptr;
+  const PredictionHeader* header = nullptr;
 };
 
 /// Bits of the file by what they are spent on. The sum is what the chunks take in a container,

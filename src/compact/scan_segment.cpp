@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
+#include <utility>
 
 #include "compact/leaf_flags.hpp"
 #include "compact/mask_coder.hpp"
 #include "compact/residual_coder.hpp"
+#include "compact/row_offsets.hpp"
 
 namespace curlidar::compact {
 namespace {
@@ -15,14 +18,13 @@ FieldSettings field_settings(const ScanParameters& p) {
   return {p.step, p.root_log2, p.smallest_leaf};
 }
 
-MaskShape mask_shape(const RowTable& table, const SegmentPlace& place) {
-  return {place.rows, place.columns, table.turn_columns};
+std::optional<Guide> guide_in(const Prediction* prediction, const SegmentPlace& place) {
+  if (prediction == nullptr) return std::nullopt;
+  return guide_of(*prediction, place);
 }
 
-/// What is added to the field's range to have the coded one.
-std::int32_t offset_of(const RowTable& table, std::uint32_t row) {
-  const std::int32_t offset = table.range_offset.empty() ? 0 : table.range_offset[row];
-  return table.rays ? offset - table.rays->rays[row].range_phase : offset;
+MaskShape mask_shape(const RowTable& table, const SegmentPlace& place) {
+  return {place.rows, place.columns, table.turn_columns};
 }
 
 std::int32_t clamp_range(std::int64_t range) {
@@ -181,8 +183,9 @@ void read_residual(const FieldState& state, const RowTable& table, const ScanPar
 
 EncodedSegment encode_segment(const Image& image, const RowTable& table,
                               const ScanParameters& parameters, const SegmentPlace& place,
-                              const Effort& effort) {
+                              const Effort& effort, const Prediction* prediction) {
   EncodedSegment out;
+  const std::optional<Guide> guide = guide_in(prediction, place);
   SegmentScan& scan = out.decoded;
   scan.occupied.resize(place.cells());
   std::vector<std::int32_t> truth(place.cells(), 0), ranges(place.cells(), 0);
@@ -193,10 +196,11 @@ EncodedSegment encode_segment(const Image& image, const RowTable& table,
                   ranges[cell] = image.range[from];
                   truth[cell] = clamp_range(std::int64_t{image.range[from]} - offset);
                 });
-  out.mask = encode_mask(scan.occupied, mask_shape(table, place), effort.thorough_mask);
+  out.mask = encode_mask(scan.occupied, mask_shape(table, place), effort.thorough_mask,
+                         guide ? &*guide : nullptr);
 
   const Geometry geometry = geometry_of(table, place);
-  FieldState state(geometry, scan.occupied, field_settings(parameters));
+  FieldState state(geometry, scan.occupied, field_settings(parameters), guide ? &*guide : nullptr);
   EncodedField field = encode_field(state, truth, effort.search);
   out.field = std::move(field.bytes);
   out.part_cost = field.part_cost;
@@ -216,8 +220,9 @@ EncodedSegment encode_segment(const Image& image, const RowTable& table,
 SegmentScan decode_segment(const RowTable& table, const ScanParameters& parameters,
                            const SegmentPlace& place, const SegmentChunk& mask,
                            const SegmentChunk& field, const SegmentChunk& residual,
-                           bool keep_nodes) {
+                           bool keep_nodes, const Prediction* prediction) {
   SegmentScan out;
+  const std::optional<Guide> guide = guide_in(prediction, place);
   out.occupied.resize(place.cells());
   out.range.resize(place.cells());
   out.field_range.resize(place.cells());
@@ -225,13 +230,14 @@ SegmentScan decode_segment(const RowTable& table, const ScanParameters& paramete
   out.leaf.resize(place.cells(), -1);
   out.total_roots = root_count(parameters, place);
   if (!mask.present) return out;
-  out.mask_rows = decode_mask(mask.payload, mask_shape(table, place), mask.whole, out.occupied);
+  out.mask_rows = decode_mask(mask.payload, mask_shape(table, place), mask.whole, out.occupied,
+                              guide ? &*guide : nullptr);
   std::fill(out.occupied.begin() + static_cast<std::ptrdiff_t>(out.mask_rows * place.columns),
             out.occupied.end(), std::uint8_t{0});
   if (out.mask_rows < place.rows || !field.present) return out;
 
   const Geometry geometry = geometry_of(table, place);
-  FieldState state(geometry, out.occupied, field_settings(parameters));
+  FieldState state(geometry, out.occupied, field_settings(parameters), guide ? &*guide : nullptr);
   DecodedField decoded = decode_field(state, field.payload, field.whole, keep_nodes);
   out.roots = decoded.complete_roots;
   forget_torn_root(state, out.roots);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "compact/field_encoder.hpp"
+#include "compact/prediction.hpp"
 #include "compact/scan_decoder.hpp"
 #include "compact/scan_effort.hpp"
 
@@ -31,9 +32,10 @@ struct EncodedSegment {
   SegmentScan decoded;
 };
 
+/// `prediction`, if any, is of the whole image.
 EncodedSegment encode_segment(const Image& image, const RowTable& table,
                               const ScanParameters& parameters, const SegmentPlace& place,
-                              const Effort& effort);
+                              const Effort& effort, const Prediction* prediction = nullptr);
 
 /// A chunk of a segment as far as it is there.
 struct SegmentChunk {
@@ -47,6 +49,6 @@ struct SegmentChunk {
 SegmentScan decode_segment(const RowTable& table, const ScanParameters& parameters,
                            const SegmentPlace& place, const SegmentChunk& mask,
                            const SegmentChunk& field, const SegmentChunk& residual,
-                           bool keep_nodes);
+                           bool keep_nodes, const Prediction* prediction = nullptr);
 
 }  // namespace curlidar::compact

@@ -64,6 +64,8 @@ const char* to_string(ScanPart part) {
       return "compact_residual";
     case ScanPart::rays:
       return "compact_rays";
+    case ScanPart::prediction:
+      return "compact_prediction";
   }
   return "unknown";
 }

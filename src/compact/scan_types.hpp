@@ -101,6 +101,7 @@ enum class ScanPart : std::uint8_t {
   field = 0x14,     ///< likewise
   residual = 0x15,  ///< likewise, if there is a residual layer
   rays = 0x16,      ///< if cells are the sensor's own rays
+  prediction = 0x17,  ///< of predicted scans: behind the parameters
 };
 /// "compact_parameters", ... as the container names them.
 const char* to_string(ScanPart part);

@@ -124,6 +124,15 @@ std::int64_t coefficient_step(std::int64_t inverse, std::int32_t step) {
   return std::max<std::int64_t>(mul_shift(square, step, 6), 1);
 }
 
+Surface on_plane_of(const Surface& warped, const Plane& plane) {
+  Surface out = warped;
+  const auto sum = [](std::int64_t a, std::int64_t b) { return clamp_to(a + b, kMaxPlane); };
+  out.plane = {sum(plane.x, warped.added.x), sum(plane.y, warped.added.y),
+               sum(plane.z, warped.added.z)};
+  out.warped = false;
+  return out;
+}
+
 Surface add_functions(const Plane& base, const PatchFrame& frame, std::int64_t step_q40,
                       const Quantised& q, std::uint32_t functions) {
   Surface surface{base, {}, false};

@@ -75,6 +75,10 @@ struct Surface {
   Plane plane;
   std::array<std::int64_t, 3> quadratic{};  ///< a3..a5, Q30
   bool curved = false;
+  /// In each cell the plane is that of the cell's guide plus `added`; `plane` is what it is where
+  /// there is none, and what neighbours inherit.
+  bool warped = false;
+  Plane added{};
 
   std::int64_t inverse_at(const PatchFrame& frame, const Direction& d) const {
     std::int64_t inverse = plane.at(d);
@@ -94,6 +98,9 @@ struct Surface {
     return range_of(inverse_at(frame, sight.direction), one - plane.beside(sight.origin));
   }
 };
+
+/// A warped surface over the plane that the guide has in a cell.
+Surface on_plane_of(const Surface& warped, const Plane& plane);
 
 /// Coefficients in steps, one for each function.
 using Quantised = std::array<std::int32_t, kMaxFunctions>;

@@ -59,6 +59,8 @@ const char* name_of(ChunkType type) {
       return "compact_residual";
     case ChunkType::compact_rays:
       return "compact_rays";
+    case ChunkType::compact_prediction:
+      return "compact_prediction";
     case ChunkType::directions:
       return "directions";
     case ChunkType::loose:

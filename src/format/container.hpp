@@ -39,6 +39,7 @@ enum class ChunkType : std::uint8_t {
   compact_field = 0x14,     ///< likewise
   compact_residual = 0x15,  ///< likewise
   compact_rays = 0x16,
+  compact_prediction = 0x17,
   directions = 0x20,      ///< where returns lie beside the middles of their cells
   loose = 0x21,           ///< points that are in no cell
   corrections = 0x22,     ///< what brings points within a bound, or back bit for bit
