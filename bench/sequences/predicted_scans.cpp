@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "codec/predicted.hpp"
-#include "curlidar/io.hpp"
+#include "given_scan.hpp"
 
 namespace curlidar {
 namespace {
@@ -69,10 +69,11 @@ std::optional<Measured> take(const Result<Encoded>& encoded, double start,
 }
 
 void print_parts(const char* what, const CompactBreakdown& b) {
-  fmt::print("    {:<10} header {:.0f}, mask {:.0f}, partition {:.0f}, modes {:.0f}, coefficients "
-             "{:.0f}, labels {:.0f}, residual {:.0f}, records {:.0f} B\n",
-             what, b.header / 8, b.mask / 8, b.partition / 8, b.modes / 8, b.coefficients / 8,
-             b.labels / 8, b.residual / 8, b.records / 8);
+  fmt::print(
+      "    {:<10} header {:.0f}, mask {:.0f}, partition {:.0f}, modes {:.0f}, coefficients "
+      "{:.0f}, labels {:.0f}, residual {:.0f}, records {:.0f} B\n",
+      what, b.header / 8, b.mask / 8, b.partition / 8, b.modes / 8, b.coefficients / 8,
+      b.labels / 8, b.residual / 8, b.records / 8);
 }
 
 int run(const Options& options) {
@@ -87,7 +88,7 @@ int run(const Options& options) {
   };
   std::uint32_t number = 0;
   for (const std::string& path : options.scans) {
-    Result<Cloud> cloud = read_cloud(path);
+    Result<Cloud> cloud = bench::given_scan(path);
     if (!cloud) {
       fmt::print(stderr, "{}: {}\n", path, cloud.error().message);
       return 3;
@@ -126,11 +127,12 @@ int run(const Options& options) {
     reference = *next;
   }
   const auto count = static_cast<double>(options.scans.size());
-  fmt::print("all: {:.0f} B = {:.4f} b a return, {:.5f} m; as a sequence {:.0f} B = {:.4f} b a "
-             "return ({:+.1f} %), {:.5f} m\n",
-             single.bytes, 8 * single.bytes / returns, single.error_m / count, sequence.bytes,
-             8 * sequence.bytes / returns, 100 * (sequence.bytes / single.bytes - 1),
-             sequence.error_m / count);
+  fmt::print(
+      "all: {:.0f} B = {:.4f} b a return, {:.5f} m; as a sequence {:.0f} B = {:.4f} b a "
+      "return ({:+.1f} %), {:.5f} m\n",
+      single.bytes, 8 * single.bytes / returns, single.error_m / count, sequence.bytes,
+      8 * sequence.bytes / returns, 100 * (sequence.bytes / single.bytes - 1),
+      sequence.error_m / count);
   if (later_single.bytes > 0) {
     fmt::print("predicted ones: {:+.1f} % bytes, {:.2f} x the time\n",
                100 * (later_sequence.bytes / later_single.bytes - 1),
@@ -145,7 +147,9 @@ int run(const Options& options) {
 int main(int argc, char** argv) {
   curlidar::Options options;
   CLI::App app("What prediction from scan to scan saves");
-  app.add_option("scans", options.scans, "Scans in their order")->required();
+  app.add_option("scans", options.scans,
+                 "Scans in their order: files, or sim:SCENE:SENSOR:NUMBER:X_M:YAW_DEG")
+      ->required();
   app.add_option("--error", options.error_m, "Mean error, metres");
   app.add_option("--effort", options.effort, "1..9");
   app.add_option("--group", options.group, "Scans of which only the first is coded alone");

@@ -248,9 +248,9 @@ Result<CompactImage> decode_compact_image(ByteSpan bytes, const DecodeOptions& o
   PartialContainer container;
   container.complete = true;
   container.chunks = std::move(chunks);
-  CURLIDAR_TRY_ASSIGN(scan, decode_scan(scan_chunks(container), {options.limits.max_cells},
-                                        {options.field_only, {}, false, options.threads,
-                                         reference_of(options)}));
+  CURLIDAR_TRY_ASSIGN(
+      scan, decode_scan(scan_chunks(container), {options.limits.max_cells},
+                        {options.field_only, {}, false, options.threads, reference_of(options)}));
   return CompactImage{std::move(scan.table),
                       {scan.parameters.rows, scan.parameters.columns, std::move(scan.range)}};
 }

@@ -90,8 +90,8 @@ Result<Encoded> encode_image(const Cloud& cloud, const EncodeSettings& settings,
   out.bytes = std::move(writer).finish();
   report.stages_ms.push_back({"write", watch.lap_ms()});
 
-  CURLIDAR_TRY_ASSIGN(
-      errors, measure_file(out.bytes, cloud, scan, trial.encoded.decoded, source, settings.threads));
+  CURLIDAR_TRY_ASSIGN(errors, measure_file(out.bytes, cloud, scan, trial.encoded.decoded, source,
+                                           settings.threads));
   report.compact = report_of(trial, scan, model, errors);
   if (settings.compact.target == CompactTarget::error_nn) {
     report.compact->error_nn_m = trial.error_nn_m;
@@ -111,8 +111,7 @@ Result<Encoded> encode_image(const Cloud& cloud, const EncodeSettings& settings,
 }  // namespace
 
 Result<Encoded> encode_compact(const Cloud& cloud, const EncodeSettings& settings,
-                               const ProgressCallback& progress,
-                               const PredictionSource* source) {
+                               const ProgressCallback& progress, const PredictionSource* source) {
   CURLIDAR_TRY(validate(settings.compact));
   return keeps_every_return(settings.compact) ? encode_records(cloud, settings, progress, source)
                                               : encode_image(cloud, settings, progress, source);

@@ -80,8 +80,10 @@ compact::RelativePose rounded(const RigidMotion& motion) {
   const std::array<double, 3> turns{turn.x, turn.y, turn.z},
       moves{motion.move.x, motion.move.y, motion.move.z};
   for (std::size_t i = 0; i < 3; ++i) {
-    pose.turn[i] = unit(turns[i], compact::RelativePose::kTurnBits, compact::RelativePose::kMostTurn);
-    pose.move[i] = unit(moves[i], compact::RelativePose::kMoveBits, compact::RelativePose::kMostMove);
+    pose.turn[i] =
+        unit(turns[i], compact::RelativePose::kTurnBits, compact::RelativePose::kMostTurn);
+    pose.move[i] =
+        unit(moves[i], compact::RelativePose::kMoveBits, compact::RelativePose::kMostMove);
   }
   return pose;
 }
@@ -106,7 +108,7 @@ class PoseSearch {
   }
 
   RigidMotion refine(RigidMotion pose) const {
-    constexpr std::array<double, 14> kScales = {1.5, 1.0, 0.7, 0.5, 0.35, 0.25, 0.18,
+    constexpr std::array<double, 14> kScales = {1.5,  1.0, 0.7,  0.5,  0.35, 0.25, 0.18,
                                                 0.12, 0.1, 0.08, 0.06, 0.06, 0.05, 0.05};
     for (const double scale : kScales) {
       const std::optional<RigidMotion> step = step_at(pose, scale);
@@ -225,7 +227,8 @@ class PoseSearch {
 compact::RelativePose find_pose(const compact::DecodedScan& reference, const CompactModel& model,
                                 const std::vector<RigidMotion>& guesses) {
   const PoseSearch search(reference, model);
-  const RigidMotion before = cloud_from_centre(reference.table), now = cloud_from_centre(model.table);
+  const RigidMotion before = cloud_from_centre(reference.table),
+                    now = cloud_from_centre(model.table);
   RigidMotion best;
   double least = search.cost(best);
   for (const RigidMotion& T_reference_scan : guesses) {

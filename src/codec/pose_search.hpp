@@ -14,7 +14,8 @@ namespace curlidar {
 
 /// T_scan_reference between the fields' centres: point to plane, surfaces of the reference against
 /// the returns of the cells that they fall into. `guesses`: where to begin, the best of what they
-/// lead to is taken; T_reference_scan of the clouds. The same on every machine. Some 100 ms a guess.
+/// lead to is taken; T_reference_scan of the clouds. The same on every machine. Some 100 ms a
+/// guess.
 compact::RelativePose find_pose(const compact::DecodedScan& reference, const CompactModel& model,
                                 const std::vector<RigidMotion>& guesses);
 

@@ -61,8 +61,8 @@ PredictedModel predict_model(const PredictionSource& source, CompactModel& model
     if (source.guess.motion) guesses.insert(guesses.begin(), *source.guess.motion);
     out.header.pose = find_pose(reference, model, guesses);
   }
-  out.prediction = predict(reference, out.header.pose, model.table, model.image.rows,
-                           model.image.columns);
+  out.prediction =
+      predict(reference, out.header.pose, model.table, model.image.rows, model.image.columns);
   return out;
 }
 

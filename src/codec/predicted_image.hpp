@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "codec/predicted.hpp"
 #include "codec/compact_model.hpp"
+#include "codec/predicted.hpp"
 #include "compact/prediction.hpp"
 
 namespace curlidar {

@@ -172,10 +172,9 @@ Result<RecordEncoding> encode_layout(Cloud given, RecordLayout layout,
   }
   if (has_image) {
     CURLIDAR_TRY_ASSIGN(
-        image,
-        encode_record_image(cloud, out.layout, loose, settings,
-                            beside_bits + 8.0 * static_cast<double>(framed(out.loose)), progress,
-                            source));
+        image, encode_record_image(cloud, out.layout, loose, settings,
+                                   beside_bits + 8.0 * static_cast<double>(framed(out.loose)),
+                                   progress, source));
     out.image = std::move(image);
   }
   CURLIDAR_TRY(add_corrections(cloud, slots, settings.compact, loose, out));
@@ -237,7 +236,8 @@ Result<RecordEncoding> encode_best(const Cloud& cloud, const EncodeSettings& set
       encode_layout(cloud, std::move(layout), settings, progress, source);
   if (source != nullptr) return laid_out;
   if (!laid_out && laid_out.error().code == ErrorCode::invalid_argument && has_image) {
-    Result<RecordEncoding> loose = encode_layout(cloud, lay_out_loose(cloud), settings, {}, nullptr);
+    Result<RecordEncoding> loose =
+        encode_layout(cloud, lay_out_loose(cloud), settings, {}, nullptr);
     if (!loose) return laid_out;
     loose->layout.notes.push_back(
         "The target is out of the reach of ranges on a lattice: the points are coded one after "

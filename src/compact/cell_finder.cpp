@@ -80,7 +80,8 @@ std::int64_t CellFinder::column_at(std::uint32_t row, std::uint32_t encoder_angl
   const auto found = std::lower_bound(positions_.begin(), positions_.end(), from_start);
   const auto next = static_cast<std::size_t>(found - positions_.begin()) % n;
   const std::size_t last = (next + n - 1) % n;
-  const std::uint32_t before = from_start - positions_[last], behind = positions_[next] - from_start;
+  const std::uint32_t before = from_start - positions_[last],
+                      behind = positions_[next] - from_start;
   const std::size_t firing = behind < before ? next : last;
   if (std::min(before, behind) > (std::uint64_t{1} << 32) / n) return kNowhere;
   const auto turn = static_cast<std::int64_t>(n);
@@ -96,7 +97,8 @@ std::int64_t CellFinder::cell_of(const Place& place) const {
     const std::size_t middle = (low + high) / 2;
     (height_at(sorted_[middle], level) >= place.z ? low : high) = middle;
   }
-  const std::int64_t above = height_at(sorted_[low], level), below = height_at(sorted_[high], level);
+  const std::int64_t above = height_at(sorted_[low], level),
+                     below = height_at(sorted_[high], level);
   const std::int64_t to_above = std::abs(above - place.z), to_below = std::abs(below - place.z);
   const Row& row = sorted_[to_below < to_above ? high : low];
   const std::int64_t gap = low == high ? level / 32 : std::abs(above - below);

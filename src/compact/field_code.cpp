@@ -26,8 +26,8 @@ LeafSurfaces surfaces_of(FieldState& state, const BlockContext& context, const L
   out.ranges.resize(cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     for (std::uint32_t k = 0; k < leaf.layers; ++k) {
-      out.ranges[i][k] = static_cast<std::int32_t>(
-          state.range_in(out.layers[k].surface, frame, cells[i]));
+      out.ranges[i][k] =
+          static_cast<std::int32_t>(state.range_in(out.layers[k].surface, frame, cells[i]));
     }
   }
   return out;

@@ -39,11 +39,12 @@ FieldModels read_priors(bool guided) {
 
 FieldModels FieldModels::blank(bool guided) {
   if (guided) {
-    return {std::vector<BitModel>(kGuidedLayout.models), {},
+    return {std::vector<BitModel>(kGuidedLayout.models),
+            {},
             std::vector<MixWeights<kGuidedInputs>>(kGuidedLayout.mixers)};
   }
-  return {std::vector<BitModel>(kFieldModels), std::vector<MixWeights<kFieldInputs>>(kFieldMixers),
-          {}};
+  return {
+      std::vector<BitModel>(kFieldModels), std::vector<MixWeights<kFieldInputs>>(kFieldMixers), {}};
 }
 
 FieldModels::FieldModels(bool guided) {

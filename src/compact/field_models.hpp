@@ -88,23 +88,23 @@ struct GuidedKind {
 inline constexpr std::array<GuidedKind, kDecisions> kGuidedKinds = [] {
   constexpr std::uint32_t w = kWarpClasses, t = kTrustClasses;
   constexpr std::array<std::array<std::uint32_t, 2>, kDecisions> more = {{
-      {12 * w, 12 * 3 * t},          // kSplit
-      {24 * w, 24 * t},              // kSplitKind
-      {18 * w, 18 * t},              // kLayerCount
-      {12 * w, 12 * 4 * t},          // kNewSurface
-      {84 * w, 4 * 16 * 2 * t},      // kParent
-      {72 * 4 * t, 3 * 4 * w},       // kFunctionCount
-      {12 * t, 2 * w},               // kRangeZero
-      {2 * t, 2},                    // kRangeSign
-      {24 * t, 24 * 6},              // kRangeClass
-      {24 * t, 24},                  // kRangeBits
-      {48 * 4 * t, 12 * 4 * w},      // kCoefficientZero
-      {12 * 4, 12 * t},              // kCoefficientSign
-      {12 * 24 * 4, 6 * 24 * t},     // kCoefficientClass
-      {24 * 4, 24 * t},              // kCoefficientBits
-      {162 * 5, 18 * 5},             // kLabelFirst
-      {81 * 5, 8 * 5},               // kLabelSecond
-      {24 * 5, 5},                   // kLabelRest
+      {12 * w, 12 * 3 * t},       // kSplit
+      {24 * w, 24 * t},           // kSplitKind
+      {18 * w, 18 * t},           // kLayerCount
+      {12 * w, 12 * 4 * t},       // kNewSurface
+      {84 * w, 4 * 16 * 2 * t},   // kParent
+      {72 * 4 * t, 3 * 4 * w},    // kFunctionCount
+      {12 * t, 2 * w},            // kRangeZero
+      {2 * t, 2},                 // kRangeSign
+      {24 * t, 24 * 6},           // kRangeClass
+      {24 * t, 24},               // kRangeBits
+      {48 * 4 * t, 12 * 4 * w},   // kCoefficientZero
+      {12 * 4, 12 * t},           // kCoefficientSign
+      {12 * 24 * 4, 6 * 24 * t},  // kCoefficientClass
+      {24 * 4, 24 * t},           // kCoefficientBits
+      {162 * 5, 18 * 5},          // kLabelFirst
+      {81 * 5, 8 * 5},            // kLabelSecond
+      {24 * 5, 5},                // kLabelRest
   }};
   std::array<GuidedKind, kDecisions> kinds{};
   for (std::size_t d = 0; d < kDecisions; ++d) {

@@ -10,8 +10,7 @@ CostTable::CostTable(const FieldModels& models) {
   const std::size_t count = models.guided() ? kSearchModels : models.models.size();
   costs_.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t p =
-        std::clamp<std::uint32_t>(models.models[i].probability, 200, 65336);
+    const std::uint32_t p = std::clamp<std::uint32_t>(models.models[i].probability, 200, 65336);
     costs_.push_back({static_cast<std::uint16_t>(bit_cost(p, false)),
                       static_cast<std::uint16_t>(bit_cost(p, true))});
   }

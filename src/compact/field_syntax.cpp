@@ -26,8 +26,7 @@ std::uint32_t distance_class(std::int64_t a, std::int64_t b, std::int32_t step) 
 void add_miss(const FieldState& state, std::int64_t row, std::int64_t column, std::int64_t& sum,
               std::int64_t& known) {
   if (state.surface_at(row, column) == kNoSurface) return;
-  const auto cell =
-      state.cell(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(column));
+  const auto cell = state.cell(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(column));
   if (state.guide->source[cell] < 0) return;
   sum += std::abs(std::int64_t{state.range[cell]} - state.guide->range[cell]);
   ++known;
@@ -68,8 +67,8 @@ std::uint32_t warp_of(const FieldState& state, const Block& b, std::uint32_t ret
     for (std::size_t cell = begin; cell < begin + b.width; ++cell) {
       if (!state.occupied[cell] || state.guide->source[cell] < 0) continue;
       const Sight sight = state.geometry.sight(cell);
-      const std::int64_t flat = range_of(plane.at(sight.direction),
-                                         (std::int64_t{1} << 30) - plane.beside(sight.origin));
+      const std::int64_t flat =
+          range_of(plane.at(sight.direction), (std::int64_t{1} << 30) - plane.beside(sight.origin));
       sum += std::abs(flat - state.guide->range[cell]);
       sure += state.guide->level[cell] < 2;
       ++known;
@@ -129,7 +128,8 @@ BlockContext block_context(FieldState& state, const Block& block, std::uint32_t 
   neighbour(std::int64_t{block.row} - 1, block.column + block.width / 2, c.above_size,
             c.above_depth);
 
-  const std::size_t middle = state.cell(block.row + block.height / 2, block.column + block.width / 2);
+  const std::size_t middle =
+      state.cell(block.row + block.height / 2, block.column + block.width / 2);
   c.middle = state.geometry.directions()[middle];
   for (std::uint32_t k = 0; k < c.parents.count; ++k) {
     const PlacedSurface& parent = state.surfaces[static_cast<std::size_t>(c.parents.surface[k])];

@@ -139,10 +139,9 @@ std::int32_t code_range_steps(Sink& sink, const BlockContext& c, std::uint32_t l
                 value != 0)) {
     return 0;
   }
-  const bool negative =
-      sink.bit(contexts_of(kRangeSign, {late, known, late, c.spread}, 0, c.guided,
-                           late * kTrustClasses + c.trust, late),
-               value < 0);
+  const bool negative = sink.bit(contexts_of(kRangeSign, {late, known, late, c.spread}, 0, c.guided,
+                                             late * kTrustClasses + c.trust, late),
+                                 value < 0);
   const std::uint32_t magnitude = code_magnitude(
       sink, FieldPart::coefficients, static_cast<std::uint32_t>(std::abs(value)) - (value != 0),
       [&](std::uint32_t at, bool bit) {
@@ -151,10 +150,9 @@ std::int32_t code_range_steps(Sink& sink, const BlockContext& c, std::uint32_t l
                         bit);
       },
       [&](std::uint32_t size, bool bit) {
-        return sink.bit(
-            contexts_of(kRangeBits, {size, size * 2 + negative, size * 2 + late, size}, 0, c.guided,
-                        size * kTrustClasses + c.trust, size),
-            bit);
+        return sink.bit(contexts_of(kRangeBits, {size, size * 2 + negative, size * 2 + late, size},
+                                    0, c.guided, size * kTrustClasses + c.trust, size),
+                        bit);
       });
   const auto steps = static_cast<std::int32_t>(std::min(magnitude + 1, std::uint32_t{1} << 24));
   return negative ? -steps : steps;
@@ -177,10 +175,10 @@ std::int32_t code_coefficient(Sink& sink, const BlockContext& c, std::uint32_t p
                 value != 0)) {
     return 0;
   }
-  const bool negative = sink.bit(
-      contexts_of(kCoefficientSign, {base, base * 3 + f, base * 2 + big, base}, 0, c.guided,
-                  base * 4 + from, base * kTrustClasses + c.trust),
-      value < 0);
+  const bool negative =
+      sink.bit(contexts_of(kCoefficientSign, {base, base * 3 + f, base * 2 + big, base}, 0,
+                           c.guided, base * 4 + from, base * kTrustClasses + c.trust),
+               value < 0);
   const std::uint32_t magnitude = code_magnitude(
       sink, FieldPart::coefficients, static_cast<std::uint32_t>(std::abs(value)) - (value != 0),
       [&](std::uint32_t at, bool bit) {
@@ -192,10 +190,9 @@ std::int32_t code_coefficient(Sink& sink, const BlockContext& c, std::uint32_t p
             bit);
       },
       [&](std::uint32_t size, bool bit) {
-        return sink.bit(
-            contexts_of(kCoefficientBits, {size, size * 2 + fresh, size * 6 + k, size}, 0, c.guided,
-                        size * 4 + from, size * kTrustClasses + c.trust),
-            bit);
+        return sink.bit(contexts_of(kCoefficientBits, {size, size * 2 + fresh, size * 6 + k, size},
+                                    0, c.guided, size * 4 + from, size * kTrustClasses + c.trust),
+                        bit);
       });
   const auto steps =
       static_cast<std::int32_t>(std::min<std::uint32_t>(magnitude + 1, kMaxQuantised));
@@ -228,13 +225,15 @@ void code_layer(Sink& sink, const BlockContext& c, std::uint32_t layers, std::ui
         // Of predicted scans, whose first two parents may be the guide's, k + 1 is at most 6.
         const std::uint32_t at = (k * (c.guided ? 7 : 6) + count - 1) * 2 + late;
         const std::uint32_t used = used_parents >> k & 1;
-        if (sink.bit(contexts_of(kParent,
-                                 {at, at * 2 + used, at * 5 + c.spread,
-                                  (c.parent_functions[k] * 3 + std::min(k, 2u)) * 2 + used},
-                                 std::min(k, 2u) * 2 + late, c.guided, at * kWarpClasses + c.warp,
-                                 ((std::min(k, 3u) * kTrustClasses + c.trust) * 16 +
-                                  (used_parents & 15)) * 2 + late),
-                     layer.parent == k + 1)) {
+        if (sink.bit(
+                contexts_of(
+                    kParent,
+                    {at, at * 2 + used, at * 5 + c.spread,
+                     (c.parent_functions[k] * 3 + std::min(k, 2u)) * 2 + used},
+                    std::min(k, 2u) * 2 + late, c.guided, at * kWarpClasses + c.warp,
+                    ((std::min(k, 3u) * kTrustClasses + c.trust) * 16 + (used_parents & 15)) * 2 +
+                        late),
+                layer.parent == k + 1)) {
           break;
         }
       }
@@ -262,8 +261,7 @@ void code_layer(Sink& sink, const BlockContext& c, std::uint32_t layers, std::ui
   if (fresh) layer.range_steps = code_range_steps(sink, c, index, layer.range_steps);
   std::uint32_t energy = 0;
   for (std::uint32_t k = fresh ? 1 : 0; k < kFunctions[functions]; ++k) {
-    layer.q[k] =
-        code_coefficient(sink, c, layer.parent, index, functions, k, energy, layer.q[k]);
+    layer.q[k] = code_coefficient(sink, c, layer.parent, index, functions, k, energy, layer.q[k]);
     energy += static_cast<std::uint32_t>(std::min(std::abs(layer.q[k]), 8));
   }
 }
@@ -357,14 +355,14 @@ std::uint32_t code_label(Sink& sink, const LabelContext& c, std::uint32_t layers
   const std::uint32_t n = layers - 2;
   const std::uint32_t w = c.wide_pattern % 3;  // W
   const std::uint32_t known = w != 2 ? 1 : 0;
-  if (sink.bit(contexts_of(kLabelFirst,
-                           {(c.pattern * 2 + known) * 3 + n,
-                            ((c.gap > 5 ? 5 : c.gap) * 3 + c.nearer) * 27 + c.pattern,
-                            c.pattern * 27 + c.wide_pattern, (c.run * 4 + c.rise) * 3 + c.nearer},
-                           n * 3 + w, c.guided,
-                           ((c.pattern * 2 + known) * 3 + n) * 5 + c.guess(c.first),
-                           (std::min(c.gap, 5u) * 3 + c.nearer) * 5 + c.guess(c.first)),
-               label == c.first)) {
+  if (sink.bit(
+          contexts_of(kLabelFirst,
+                      {(c.pattern * 2 + known) * 3 + n,
+                       ((c.gap > 5 ? 5 : c.gap) * 3 + c.nearer) * 27 + c.pattern,
+                       c.pattern * 27 + c.wide_pattern, (c.run * 4 + c.rise) * 3 + c.nearer},
+                      n * 3 + w, c.guided, ((c.pattern * 2 + known) * 3 + n) * 5 + c.guess(c.first),
+                      (std::min(c.gap, 5u) * 3 + c.nearer) * 5 + c.guess(c.first)),
+          label == c.first)) {
     return c.first;
   }
   if (layers == 2) return 1 - c.first;
@@ -388,7 +386,8 @@ std::uint32_t code_label(Sink& sink, const LabelContext& c, std::uint32_t layers
     const std::uint32_t at = (n * 2 + (left - 2)) * 4 + k;
     if (sink.bit(contexts_of(kLabelRest, {at, at, c.nearer, at}, 0, c.guided, at * 5 + c.guess(k),
                              c.guess(k)),
-                 label == k)) return k;
+                 label == k))
+      return k;
     --left;
   }
   return c.first;

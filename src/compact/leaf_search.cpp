@@ -235,9 +235,8 @@ std::optional<FittedLayer> LeafSearch::best_layer(const Members& members, std::u
       const Surface surface = surface_of(state_, context_, frame_, *code);
       for (const std::uint32_t i : members) {
         if (cost >= least) break;
-        cost +=
-            256 * error(i, static_cast<std::int32_t>(
-                               state_.range_in(surface, frame_, samples_.cells[i])));
+        cost += 256 * error(i, static_cast<std::int32_t>(
+                                   state_.range_in(surface, frame_, samples_.cells[i])));
       }
       if (cost >= least) continue;
       least = cost;

@@ -63,8 +63,8 @@ class MaskHints {
   static std::uint8_t packed(const Guide& guide, std::size_t cell) {
     const std::uint32_t level = guide.level[cell];
     const std::uint32_t far = level < 2 ? level : level < 4 ? 2 : 3;
-    return static_cast<std::uint8_t>((level < 2 ? 1u : 0u) | (guide.was_there[cell] != 0 ? 2u : 0u) |
-                                     far << 2);
+    return static_cast<std::uint8_t>((level < 2 ? 1u : 0u) |
+                                     (guide.was_there[cell] != 0 ? 2u : 0u) | far << 2);
   }
 
   std::size_t rows_, stride_;

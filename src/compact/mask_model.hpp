@@ -98,8 +98,7 @@ bool MaskModel::code(Coder& coder, const MaskWindow& window, std::uint32_t scale
 /// Goes over the rows of a mask from the top until `row_done(row)` says no, and calls
 /// `code_cell(window, row, column, bit)` for every cell. Cells are read or written.
 template <bool kDecodes, class Cell, class CodeCell, class RowDone>
-void walk_mask(const MaskShape& shape, Cell* cells, const CodeCell& code_cell,
-               RowDone&& row_done) {
+void walk_mask(const MaskShape& shape, Cell* cells, const CodeCell& code_cell, RowDone&& row_done) {
   MaskScan scan(shape);
   for (std::size_t row = 0; row < shape.rows; ++row) {
     scan.begin_row();

@@ -134,8 +134,9 @@ void mark_was_there(const DecodedScan& reference, const RowTable& table, Predict
   for (std::uint32_t row = 0; row < out.rows; ++row) {
     for (std::uint32_t column = 0; column < out.columns; ++column) {
       const std::uint32_t angle =
-          table.rays ? table.rays->encoder_angle(table.rays->firings[table.rays->firing_of(row, column)])
-                     : azimuth_of_column(table.first_column + column, table.turn_columns);
+          table.rays
+              ? table.rays->encoder_angle(table.rays->firings[table.rays->firing_of(row, column)])
+              : azimuth_of_column(table.first_column + column, table.turn_columns);
       const std::int64_t there = finder.column_at(row, angle);
       if (there < 0) continue;
       const std::size_t from =
@@ -194,7 +195,8 @@ Prediction predict(const DecodedScan& reference, const RelativePose& pose, const
     Plane plane = mover.plane(cell_before, place);
     std::int64_t range = range_in(plane, sight);
     // Planes seen along themselves say little beside the line of sight.
-    if (4 * range < 3 * std::int64_t{nearest[cell]} || 3 * range > 4 * std::int64_t{nearest[cell]}) {
+    if (4 * range < 3 * std::int64_t{nearest[cell]} ||
+        3 * range > 4 * std::int64_t{nearest[cell]}) {
       plane = facing(place);
       range = range_in(plane, sight);
     }

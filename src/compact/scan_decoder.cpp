@@ -306,10 +306,9 @@ Result<DecodedScan> decode_scan(const ScanChunks& chunks, const ScanLimits& limi
   std::vector<SegmentScan> scans(out.segments.size());
   parallel_for(scans.size(), options.threads, [&](std::size_t i) {
     if (!out.segments[i].wanted) return;
-    scans[i] =
-        decode_segment(out.table, out.parameters, out.segments[i].place, chunk_of(views[0], i),
-                       chunk_of(views[1], i), residual_of(i), options.keep_nodes,
-                       prediction ? &*prediction : nullptr);
+    scans[i] = decode_segment(out.table, out.parameters, out.segments[i].place,
+                              chunk_of(views[0], i), chunk_of(views[1], i), residual_of(i),
+                              options.keep_nodes, prediction ? &*prediction : nullptr);
   });
 
   const std::size_t cells = std::size_t{out.parameters.rows} * out.parameters.columns;

@@ -56,8 +56,8 @@ struct DecodedLeaf {
 /// How a scan is predicted: the motion since its reference, and what it shares with it.
 struct PredictionHeader {
   RelativePose pose;
-  bool same_rows = false;     ///< elevations, heights, range offsets and rays are the reference's
-  bool same_firings = false;  ///< so are columns, firings and motion; only with same_rows
+  bool same_rows = false;       ///< elevations, heights, range offsets and rays are the reference's
+  bool same_firings = false;    ///< so are columns, firings and motion; only with same_rows
   std::uint16_t reference = 0;  ///< fingerprint of the reference
 
   friend bool operator==(const PredictionHeader&, const PredictionHeader&) = default;
@@ -118,8 +118,7 @@ Result<ScanHeader> decode_scan_header(const ScanChunks& chunks, const ScanLimits
 inline Surface surface_in(const DecodedScan& scan, std::size_t cell) {
   const Surface& surface = scan.surfaces[static_cast<std::size_t>(scan.surface[cell])].surface;
   if (!surface.warped || scan.guide_source[cell] < 0) return surface;
-  return on_plane_of(surface,
-                     scan.guide_planes[static_cast<std::size_t>(scan.guide_source[cell])]);
+  return on_plane_of(surface, scan.guide_planes[static_cast<std::size_t>(scan.guide_source[cell])]);
 }
 
 /// Decodes what is there. Integers only: the same on every machine and for any number of threads.

@@ -26,7 +26,8 @@ struct ScanSettings {
   std::uint32_t bands = 0, sectors = 0;
   bool index = true;        ///< false also means one segment where bands and sectors are 0
   std::size_t threads = 0;  ///< 0 = all cores; any number gives the same bytes
-  /// What a scan before makes expect, and what the file says of it; null: nothing. The image's size.
+  /// What a scan before makes expect, and what the file says of it; null: nothing. The image's
+  /// size.
   const Prediction* prediction = nullptr;
   const PredictionHeader* header = nullptr;
 };

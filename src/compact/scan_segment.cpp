@@ -219,8 +219,8 @@ EncodedSegment encode_segment(const Image& image, const RowTable& table,
 
 SegmentScan decode_segment(const RowTable& table, const ScanParameters& parameters,
                            const SegmentPlace& place, const SegmentChunk& mask,
-                           const SegmentChunk& field, const SegmentChunk& residual,
-                           bool keep_nodes, const Prediction* prediction) {
+                           const SegmentChunk& field, const SegmentChunk& residual, bool keep_nodes,
+                           const Prediction* prediction) {
   SegmentScan out;
   const std::optional<Guide> guide = guide_in(prediction, place);
   out.occupied.resize(place.cells());

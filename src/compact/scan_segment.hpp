@@ -48,7 +48,7 @@ struct SegmentChunk {
 /// segment means that the chunk is damaged.
 SegmentScan decode_segment(const RowTable& table, const ScanParameters& parameters,
                            const SegmentPlace& place, const SegmentChunk& mask,
-                           const SegmentChunk& field, const SegmentChunk& residual,
-                           bool keep_nodes, const Prediction* prediction = nullptr);
+                           const SegmentChunk& field, const SegmentChunk& residual, bool keep_nodes,
+                           const Prediction* prediction = nullptr);
 
 }  // namespace curlidar::compact

@@ -78,7 +78,7 @@ class DamageTest(unittest.TestCase):
         self.refused(data[:-6] + bytes(unknown) + data[-6:])
 
     def test_unknown_chunks(self):
-        for kind in (0x17, 0x30, 0x71):
+        for kind in (0x18, 0x3f, 0x71):
             self.refused(file_of([*self.fine, (kind, b"abc")]))
         for kind in (0x91, 0xf1):
             self.same(file_of([*self.fine, (kind, b"abc")]), self.fine)

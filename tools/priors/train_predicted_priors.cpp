@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // train_predicted_priors LIST [FOLDER]: reads lines "GROUP FIRST_PATH SECOND_PATH still|moving" of
 // scans that follow each other (one sensor or drive a group), codes the second of each from the
-// first at several errors, says what fields and masks cost with priors that their own group did not
+// first at several steps, says what fields and masks cost with priors that their own group did not
 // teach, and writes predicted_field.txt, predicted_field_mix.txt, predicted_mask.txt and
 // predicted_mask_mix.txt, taught by all groups but "test", into FOLDER.
 #include <cstdio>
@@ -14,14 +14,14 @@
 #include <fmt/format.h>
 
 #include "base/parallel.hpp"
-#include "codec/predicted.hpp"
 #include "codec/compact_field.hpp"
+#include "codec/predicted.hpp"
 #include "compact/field_encoder.hpp"
 #include "compact/mask_guide.hpp"
 #include "compact/prediction.hpp"
 #include "compact/prediction_chunk.hpp"
-#include "curlidar/io.hpp"
 #include "format/container.hpp"
+#include "given_scan.hpp"
 #include "priors/train.hpp"
 
 namespace {
@@ -99,8 +99,8 @@ struct Pair {
   bool still = false;
 };
 
-/// Errors of training, metres.
-constexpr double kErrors_m[] = {0.2, 0.1, 0.05, 0.02, 0.008};
+/// Steps of training, metres.
+constexpr double kSteps_m[] = {1.2, 0.5, 0.25, 0.12};
 
 std::shared_ptr<const PredictionReference> reference_of(const Result<Encoded>& encoded) {
   if (!encoded) return nullptr;
@@ -110,13 +110,13 @@ std::shared_ptr<const PredictionReference> reference_of(const Result<Encoded>& e
   return reference ? *reference : nullptr;
 }
 
-/// What the second scan's coder saw at an error; null if there is no such thing.
-LessonRef lesson_of(const Pair& pair, const Cloud& first, const Cloud& second, double error_m) {
+/// What the second scan's coder saw at a step; null if there is no such thing.
+LessonRef lesson_of(const Pair& pair, const Cloud& first, const Cloud& second, double step_m) {
   EncodeSettings settings;
   settings.attributes.emplace();
   settings.compact.index = false;
-  settings.compact.target = CompactTarget::error;
-  settings.compact.target_value = error_m;
+  settings.compact.target = CompactTarget::step;
+  settings.compact.target_value = step_m;
   const auto reference = reference_of(encode(first, settings));
   if (!reference) return nullptr;
   const auto encoded = encode_predicted(second, settings, reference, {pair.still, {}});
@@ -134,7 +134,7 @@ LessonRef lesson_of(const Pair& pair, const Cloud& first, const Cloud& second, d
   auto lesson = std::make_shared<Lesson>();
   const ScanParameters& p = coded.parameters;
   const SegmentPlace whole{0, 0, p.rows, p.columns};
-  lesson->name = fmt::format("{} {}", pair.second.substr(pair.second.rfind('/') + 1), error_m);
+  lesson->name = fmt::format("{} {}", pair.second.substr(pair.second.rfind('/') + 1), step_m);
   lesson->geometry = std::make_unique<Geometry>(geometry_of(coded.table, whole));
   lesson->prediction = predict(reference->scan(), header->pose, coded.table, p.rows, p.columns);
   lesson->guide = guide_of(lesson->prediction, whole);
@@ -189,17 +189,17 @@ int main(int argc, char** argv) {
     pair.still = kind == "still";
     pairs.push_back(pair);
   }
-  constexpr std::size_t errors = std::size(kErrors_m);
-  std::vector<LessonRef> found(pairs.size() * errors);
+  constexpr std::size_t steps = std::size(kSteps_m);
+  std::vector<LessonRef> found(pairs.size() * steps);
   parallel_for(found.size(), 0, [&](std::size_t i) {
-    const Pair& of = pairs[i / errors];
-    const auto first = read_cloud(of.first), second = read_cloud(of.second);
-    if (first && second) found[i] = lesson_of(of, *first, *second, kErrors_m[i % errors]);
+    const Pair& of = pairs[i / steps];
+    const auto first = bench::given_scan(of.first), second = bench::given_scan(of.second);
+    if (first && second) found[i] = lesson_of(of, *first, *second, kSteps_m[i % steps]);
     std::cerr << (found[i] ? '.' : 'x') << std::flush;
   });
   Examples lessons;
   for (std::size_t i = 0; i < found.size(); ++i) {
-    if (found[i]) lessons.push_back({pairs[i / errors].group, found[i]});
+    if (found[i]) lessons.push_back({pairs[i / steps].group, found[i]});
   }
   const training::Priors field = taught(FieldRoom{}, lessons, kFieldMixRate, "field");
   // A mask is the same at every error but for what is expected of it.
