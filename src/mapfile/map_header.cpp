@@ -211,8 +211,9 @@ Result<TilePart> read_tile_part(ByteSpan part, const std::string& name) {
 
 namespace {
 
-/// A rotation as three whole numbers: the quaternion's vector, its scalar taken positive.
-std::array<std::int32_t, 3> quaternion_of(const RigidMotion& pose) {
+/// A rotation as four whole numbers: a quaternion w x y z of length 2^30, w not negative. All four,
+/// since w cannot be told from the others where it is small: on the way back along a street.
+std::array<std::int32_t, 4> quaternion_of(const RigidMotion& pose) {
   const auto& [a, b, c] = pose.rotation;
   // The largest of four ways to begin keeps the root away from zero.
   const std::array<double, 4> square{1 + a.x + b.y + c.z, 1 + a.x - b.y - c.z, 1 - a.x + b.y - c.z,
@@ -237,21 +238,25 @@ std::array<std::int32_t, 3> quaternion_of(const RigidMotion& pose) {
       break;
   }
   const double sign = q[0] < 0 ? -1 : 1;
-  std::array<std::int32_t, 3> out{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double value = std::round(sign * q[k + 1] * kQuaternionScale);
+  std::array<std::int32_t, 4> out{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double value = std::round(sign * q[k] * kQuaternionScale);
     out[k] = static_cast<std::int32_t>(std::clamp(value, -kQuaternionScale, kQuaternionScale));
   }
   return out;
 }
 
-/// The motion of whole numbers; false if they are longer than a quaternion can be.
-bool rotation_of(const std::array<std::int32_t, 3>& numbers, RigidMotion& pose) {
-  const double x = numbers[0] / kQuaternionScale, y = numbers[1] / kQuaternionScale,
-               z = numbers[2] / kQuaternionScale;
-  const double rest = 1 - (x * x + y * y + z * z);
-  if (rest < -1e-8) return false;
-  const double w = std::sqrt(std::max(rest, 0.0));
+/// The motion of whole numbers; false if they are not as long as a quaternion is.
+bool rotation_of(const std::array<std::int32_t, 4>& numbers, RigidMotion& pose) {
+  std::array<double, 4> q{};
+  double square = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    q[k] = numbers[k] / kQuaternionScale;
+    square += q[k] * q[k];
+  }
+  if (!within(square, 1 - 1e-6, 1 + 1e-6)) return false;
+  const double length = std::sqrt(square);
+  const double w = q[0] / length, x = q[1] / length, y = q[2] / length, z = q[3] / length;
   pose.rotation = {{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},
                     {2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)},
                     {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
@@ -282,7 +287,7 @@ Result<MapScan> read_scan_part(ByteSpan part, const std::string& name) {
   ByteReader reader(part);
   MapScan scan;
   scan.T_map_sensor.move = read_vec(reader);
-  std::array<std::int32_t, 3> numbers{};
+  std::array<std::int32_t, 4> numbers{};
   for (std::int32_t& number : numbers)
     number = static_cast<std::int32_t>(reader.read<std::uint32_t>());
   const auto time_s = reader.read<double>();
