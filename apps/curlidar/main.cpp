@@ -30,9 +30,9 @@ With several inputs the others are still done; the code is that of the first fai
 
 std::vector<Command> add_commands(CLI::App& root) {
   std::vector<Command> commands;
-  for (auto* add :
-       {add_encode, add_decode, add_verify, add_info, add_compare, add_render, add_convert,
-        add_project, add_mesh, add_upsample, add_simulate, add_sensors, add_calibrate, add_demo, add_report}) {
+  for (auto* add : {add_encode, add_decode, add_verify, add_info, add_compare, add_render,
+                    add_convert, add_project, add_mesh, add_upsample, add_simulate, add_sensors,
+                    add_calibrate, add_demo, add_register, add_report}) {
     commands.push_back(add(root));
   }
   return commands;

@@ -69,6 +69,8 @@ Status write_poses(const std::string& path, const PoseTrack& track,
                    PoseFormat format = PoseFormat::kitti);
 /// What write_poses writes.
 Result<std::string> format_poses(const PoseTrack& track, PoseFormat format);
+/// The times of a file with one on each line. Errors as of read_poses.
+Result<std::vector<double>> read_times(const std::string& path);
 /// One time on each line, as KITTI's times.txt has them. Atomic.
 Status write_times(const std::string& path, std::span<const double> time_s);
 

@@ -32,17 +32,6 @@ Result<TextFile> open_text(const std::string& path) {
   return TextFile{name_of(path), std::move(bytes), {}};
 }
 
-Result<std::vector<double>> read_times(const std::string& path) {
-  CURLIDAR_TRY_ASSIGN(file, open_text(path));
-  CURLIDAR_TRY_ASSIGN(lines, io::content_lines(file.source()));
-  std::vector<double> times;
-  for (const io::NumberedLine& line : lines) {
-    CURLIDAR_TRY_ASSIGN(numbers, io::line_numbers(file.source(), line, 1));
-    times.push_back(numbers.front());
-  }
-  return times;
-}
-
 /// How much of a way leads along each axis of the sensor's own frame, summed with signs.
 struct OwnWay {
   Vec3 along{};
@@ -126,6 +115,17 @@ Result<PoseTrack> parse_poses(std::span<const std::byte> bytes, const std::strin
   CURLIDAR_TRY_ASSIGN(track, io::parse_pose_lines(source, lines, *format));
   if (track.T_map_sensor.empty()) return Error{ErrorCode::corrupt, name + ": no pose in it"};
   return track;
+}
+
+Result<std::vector<double>> read_times(const std::string& path) {
+  CURLIDAR_TRY_ASSIGN(file, open_text(path));
+  CURLIDAR_TRY_ASSIGN(lines, io::content_lines(file.source()));
+  std::vector<double> times;
+  for (const io::NumberedLine& line : lines) {
+    CURLIDAR_TRY_ASSIGN(numbers, io::line_numbers(file.source(), line, 1));
+    times.push_back(numbers.front());
+  }
+  return times;
 }
 
 Result<RigidMotion> read_calibration(const std::string& path) {
