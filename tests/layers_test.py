@@ -29,7 +29,7 @@ HEADERS = {
     "map_view": "mapview",
     "field": "field", "dense": "dense", "paper": "codec", "codec": "codec", "compare": "metrics",
     "metrics": "metrics",
-    "simulate": "simulate", "render": "render", "verify": "codec", "reconstruct": "reconstruct",
+    "simulate": "simulate", "drive": "simulate", "render": "render", "verify": "codec", "reconstruct": "reconstruct",
 }
 
 SOURCE_FOLDERS = ["include", "src", "apps", "examples", "tests", "bench", "fuzz", "tools"]

@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "common_inputs.hpp"
+#include "simulate_drive.hpp"
 
 namespace curlidar::app {
 namespace {
@@ -17,6 +18,7 @@ constexpr const char* kFooter = R"(Examples:
   curlidar simulate -o street.pcd
   curlidar simulate --scene room --sensor vlp16 --seed 7 --noise 0 --dropout 0 -o room.pcd
   curlidar simulate -o scan.pcd --truth-output truth.pcd --truth-rows 8
+  curlidar simulate --drive --scans 200 --truth -o drive/    # scans, poses, the exact surface
 The truth is exact (no noise, no dropouts) and lies on the grid that 'decode --rows R --cols C' of
 the encoded scan has, so that both can be compared direction by direction.)";
 
@@ -24,6 +26,7 @@ struct Options {
   CommonOptions common;
   std::string scene = "street", sensor = "hdl64e-kitti", output = "scan.pcd", to_format;
   SimulateSettings simulate;
+  DriveOptions drive;
   std::string truth_output, grid_rows = "uniform";
   std::uint32_t grid_columns = 1024;
   double truth_rows = 1, truth_columns = 1, truth_min_range_m = 0;
@@ -52,6 +55,9 @@ int run(const Options& options) {
   const SensorProfile sensor = need_option(load_sensor(options.sensor));
   SimulateSettings settings = options.simulate;
   settings.threads = options.common.threads;
+  if (options.drive.drive) {
+    return run_drive(options.common, options.drive, settings, sensor, options.output);
+  }
   const auto scene = need_option(make_scene(options.scene, settings.seed));
   const Lattice lattice = truth_lattice(options, sensor);
   WriteOptions write_options;
@@ -137,6 +143,7 @@ Command add_simulate(CLI::App& root) {
   app->add_option("--to-format", options->to_format,
                   fmt::format("Its format: {}; default by extension", kFormatNames));
   add_truth_options(*app, *options);
+  add_drive_options(*app, options->drive);
   add_common_options(*app, options->common);
   return {app, [options] { return run(*options); }};
 }
