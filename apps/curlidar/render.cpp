@@ -147,7 +147,7 @@ void add_picture_options(CLI::App& app, Options& options) {
          "range-image, birds-eye, perspective, of a compact .curl file partition or layers, of "
          "a file of the paper's profiles degrees")
       ->capture_default_str();
-  app.add_option("--colour,--color", options.colour, "range, height, intensity or error")
+  app.add_option("--colour,--color", options.colour, "range, height, intensity, normal or error")
       ->capture_default_str();
   app.add_option("--reference", options.reference,
                  "For --colour error: cloud or .curl file to which distances are measured");

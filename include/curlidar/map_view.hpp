@@ -2,6 +2,7 @@
 // A surface map looked at: along lines of sight, as a sensor, beside a reference.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -96,33 +97,44 @@ Result<Cloud> sample_map_along(const MapScene& scene, const Cloud& scan,
                                const RigidMotion& T_map_sensor, double max_range_m,
                                const SampleMapSettings& settings = {});
 
+/// A point on the surface of a map, or of anything.
+struct SurfacePoint {
+  Vec3 position{};
+  std::array<float, 3> normal{};                              ///< a unit vector either way, or 0
+  float intensity = std::numeric_limits<float>::quiet_NaN();  ///< NaN: unknown
+
+  friend bool operator==(const SurfacePoint&, const SurfacePoint&) = default;
+};
+
 /// A random subset of points that come one by one: each is in it with the same probability, and
 /// the same points give the same subset. Holds at most `capacity` of them, or, once there were
-/// more, at least a third of that.
+/// more, about half of that or more.
 class PointSubset {
  public:
   explicit PointSubset(std::size_t capacity, std::uint64_t seed = 1)
       : capacity_(capacity), seed_(seed) {}
 
-  /// `value` stays with the point. Points that are no returns are passed over.
-  void add(const Vec3& point, float value = std::numeric_limits<float>::quiet_NaN());
+  /// Points that are no returns are passed over.
+  void add(const SurfacePoint& point);
   std::size_t seen() const { return seen_; }
-  const std::vector<Vec3>& points() const { return points_; }
-  const std::vector<float>& values() const { return values_; }
+  const std::vector<SurfacePoint>& points() const { return points_; }
   /// All that were seen are in it.
   bool complete() const { return seen_ == points_.size(); }
+  /// As an unorganised cloud, float32 if that tells less than a millimetre apart, else float64.
+  /// Attributes: intensity if any point has one; with `normals` normal_x, normal_y, normal_z.
+  Cloud cloud(bool normals = false) const;
 
  private:
   std::size_t capacity_, seen_ = 0;
   std::uint64_t seed_;
   std::uint64_t limit_ = std::numeric_limits<std::uint64_t>::max();  ///< of the points' lots
-  std::vector<Vec3> points_;
-  std::vector<float> values_;
+  std::vector<SurfacePoint> points_;
   std::vector<std::uint64_t> lots_;
 };
 
-/// Points on the surface of a map, not farther than `spacing_m` from each other in every cell of
-/// every footprint: a random subset of at most `max_points`. values(): intensities.
+/// Points on the surface of a map, not farther than `spacing_m` from each other along u and v of
+/// every leaf: a random subset of at most `max_points`. Normals point up, or along their axis.
+/// Errors: invalid_argument (a spacing below 1 mm, no points at all).
 Result<PointSubset> map_points(const std::vector<MapTile>& tiles, double spacing_m,
                                std::size_t max_points, std::uint64_t seed = 1);
 
@@ -152,7 +164,8 @@ struct MapComparison {
   /// points that stand for it, what figures of other maps mostly are.
   MapDistances completeness, completeness_points;
   std::vector<double> f_scores;  ///< of accuracy and completeness, one for each threshold
-  Cloud samples;  ///< points of the map: "error" (float32, metres) and, if it has it, "intensity"
+  /// Points of the map, in its frame: PointSubset::cloud with "error" (float32, metres).
+  Cloud samples;
   std::vector<float> reference_errors;  ///< to the surface, one a slot of the reference; NaN
 };
 

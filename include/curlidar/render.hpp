@@ -27,12 +27,18 @@ enum class View {
   layers,     ///< the same, each return in the colour of its layer
   degrees,  ///< of a file of the paper's profiles: each return in the colour of its patch's degree
 };
-enum class ColourBy { range, height, intensity, error };
+enum class ColourBy {
+  range,
+  height,
+  intensity,
+  error,
+  normal,  ///< of attributes normal_x, normal_y, normal_z: |x|, |y|, |z| as red, green, blue
+};
 /// "range-image", "birds-eye", "perspective", "partition", "layers",
 /// "degrees"
 Result<View> view_by_name(std::string_view name);
 Result<ColourBy> colour_by_name(
-    std::string_view name);  ///< "range", "height", "intensity", "error"
+    std::string_view name);  ///< "range", "height", "intensity", "error", "normal"
 
 struct RenderSettings {
   View view = View::perspective;

@@ -50,29 +50,20 @@ Result<Cloud> points_of(const MapScene& scene, const Cloud& reference,
   CURLIDAR_TRY_ASSIGN(
       all, map_points(scene.tiles(), settings.spacing_m, settings.max_points, settings.seed));
   count = all.seen();
-  Cloud cloud;
-  std::vector<float> intensity;
-  const Bounds box = bounds_of_returns(reference);
-  double largest = 0;
-  for (std::size_t i = 0; i < all.points().size(); ++i) {
-    const Vec3& p = all.points()[i];
-    if (settings.crop && !inside(box, p)) continue;
-    cloud.positions.push_back(p);
-    intensity.push_back(all.values()[i]);
-    largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  Cloud cloud = all.cloud();
+  if (settings.crop) {
+    const Bounds box = bounds_of_returns(reference);
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+      if (inside(box, cloud.positions[i])) kept.push_back(static_cast<std::uint32_t>(i));
+    }
+    cloud = select(cloud, kept);
   }
-  if (cloud.positions.empty()) {
-    return Error{ErrorCode::invalid_argument,
-                 count == 0 ? "the map has no surface to compare"
-                            : "the map has no surface within the bounding box of the reference: "
-                              "are both in one frame?"};
-  }
-  // A float tells a quarter of a millimetre up to here.
-  constexpr double kFloatReach_m = 4096;
-  cloud.position_type = largest < kFloatReach_m ? ScalarType::float32 : ScalarType::float64;
-  cloud.width = static_cast<std::uint32_t>(cloud.positions.size());
-  if (scene.has_intensity()) cloud.attributes.push_back({"intensity", 1, std::move(intensity)});
-  return cloud;
+  if (!cloud.positions.empty()) return cloud;
+  return Error{ErrorCode::invalid_argument,
+               count == 0 ? "the map has no surface to compare"
+                          : "the map has no surface within the bounding box of the reference: are "
+                            "both in one frame?"};
 }
 
 /// Capped; NaN where there is no distance.

@@ -76,11 +76,12 @@ Result<View> view_by_name(std::string_view name) {
 }
 
 Result<ColourBy> colour_by_name(std::string_view name) {
-  return by_name<ColourBy, 4>(name, "colouring",
+  return by_name<ColourBy, 5>(name, "colouring",
                               {{{"range", ColourBy::range},
                                 {"height", ColourBy::height},
                                 {"intensity", ColourBy::intensity},
-                                {"error", ColourBy::error}}});
+                                {"error", ColourBy::error},
+                                {"normal", ColourBy::normal}}});
 }
 
 Result<Image> render(const Cloud& cloud, const RenderSettings& settings,

@@ -43,6 +43,31 @@ Result<std::vector<double>> values_of(const Cloud& cloud, ColourBy colour,
   return values;
 }
 
+/// Opposite normals, and those of one wall from both sides, look alike.
+Result<Scale> normal_scale(const Cloud& cloud) {
+  const Attribute* parts[] = {cloud.find("normal_x"), cloud.find("normal_y"),
+                              cloud.find("normal_z")};
+  if (parts[0] == nullptr || parts[1] == nullptr || parts[2] == nullptr) {
+    return Error{ErrorCode::not_found,
+                 "render: the cloud has no attributes normal_x, normal_y and normal_z; colour by "
+                 "range or height"};
+  }
+  if (count_returns(cloud) == 0) {
+    return Error{ErrorCode::invalid_argument, "render: the cloud has no return; nothing to draw"};
+  }
+  Scale scale;
+  scale.label = "normal: |x| red, |y| green, |z| blue";
+  scale.colours.reserve(cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const auto part = [&](const Attribute* attribute) {
+      const double value = std::abs(attribute->as_double(i));
+      return std::isnan(value) ? 0.5f : static_cast<float>(0.15 + 0.8 * std::min(value, 1.0));
+    };
+    scale.colours.push_back({part(parts[0]), part(parts[1]), part(parts[2])});
+  }
+  return scale;
+}
+
 const char* label_of(ColourBy colour) {
   switch (colour) {
     case ColourBy::range:
@@ -52,6 +77,7 @@ const char* label_of(ColourBy colour) {
     case ColourBy::intensity:
       return "intensity";
     case ColourBy::error:
+    case ColourBy::normal:
       break;
   }
   return "error [m]";
@@ -68,6 +94,7 @@ std::string number(double value, double span) {
 
 Result<Scale> make_scale(const Cloud& cloud, const RenderSettings& settings,
                          const std::vector<double>& given) {
+  if (settings.colour == ColourBy::normal) return normal_scale(cloud);
   auto values = values_of(cloud, settings.colour, given);
   if (!values) return values.error();
   Scale scale;
@@ -132,6 +159,7 @@ void draw_scale(Canvas& canvas, const Scale& scale) {
   };
   const double span = scale.high - scale.low;
   write(scale.label);
+  if (!scale.colours.empty()) return;
   write(number(scale.low, span));
   const int width = std::min(80 * size, canvas.width() / 4);
   for (int i = 0; i < width; ++i) {

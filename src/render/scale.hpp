@@ -17,9 +17,12 @@ struct Scale {
   double low = 0, high = 1;    ///< low < high
   std::string label;           ///< with its unit
   bool error = false;
+  std::vector<Colour> colours;  ///< of the slots themselves, not from values; empty: from those
 
   Colour colour(double share) const { return error ? map_error(share) : map_value(share); }
-  Colour colour_of(std::size_t slot) const { return colour((values[slot] - low) / (high - low)); }
+  Colour colour_of(std::size_t slot) const {
+    return colours.empty() ? colour((values[slot] - low) / (high - low)) : colours[slot];
+  }
 };
 
 /// Values by the settings. Errors: no return, a missing intensity, wrong number of error values.

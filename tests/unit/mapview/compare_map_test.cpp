@@ -120,27 +120,56 @@ TEST(CompareMap, NothingToCompareIsAnError) {
 
 TEST(PointSubset, IsAllOrAFairPart) {
   PointSubset all(100), some(100), other(100, 2);
-  for (int i = 1; i <= 100; ++i) all.add({static_cast<double>(i), 0, 0}, 0.5f);
+  for (int i = 1; i <= 100; ++i) all.add({{static_cast<double>(i), 0, 0}, {}, 0.5f});
   EXPECT_TRUE(all.complete());
   EXPECT_EQ(all.points().size(), 100u);
-  all.add({0, 0, 0});
-  all.add({NAN, 0, 0});
+  all.add({});
+  all.add({{NAN, 0, 0}, {}, 1});
   EXPECT_EQ(all.seen(), 100u);
   double mean = 0;
   for (int i = 1; i <= 20000; ++i) {
-    some.add({static_cast<double>(i), 0, 0}, static_cast<float>(i));
-    other.add({static_cast<double>(i), 0, 0});
+    some.add({{static_cast<double>(i), 0, 0}, {}, static_cast<float>(i)});
+    other.add({{static_cast<double>(i), 0, 0}, {}, static_cast<float>(i)});
   }
   EXPECT_EQ(some.seen(), 20000u);
   EXPECT_FALSE(some.complete());
   ASSERT_LE(some.points().size(), 100u);
   ASSERT_GE(some.points().size(), 33u);
   EXPECT_NE(some.points(), other.points());
-  for (std::size_t i = 0; i < some.points().size(); ++i) {
-    EXPECT_EQ(some.points()[i].x, some.values()[i]);
-    mean += some.points()[i].x / static_cast<double>(some.points().size());
+  for (const SurfacePoint& point : some.points()) {
+    EXPECT_EQ(point.position.x, point.intensity);
+    mean += point.position.x / static_cast<double>(some.points().size());
   }
   EXPECT_NEAR(mean, 10000, 3000);
+}
+
+TEST(PointSubset, BecomesACloud) {
+  PointSubset points(10);
+  points.add({{1, 2, 3}, {0, 0, 1}, 0.5f});
+  points.add({{4, 5, 6}, {1, 0, 0}});
+  const Cloud plain = points.cloud(), normals = points.cloud(true);
+  EXPECT_EQ(plain.position_type, ScalarType::float32);
+  EXPECT_EQ(plain.width, 2u);
+  EXPECT_EQ(plain.find("normal_x"), nullptr);
+  EXPECT_EQ(plain.find("intensity")->as_double(0), 0.5);
+  EXPECT_EQ(normals.find("normal_z")->as_double(0), 1);
+  EXPECT_EQ(normals.find("normal_x")->as_double(1), 1);
+  points.add({{500000, 0, 0}, {}, 0});
+  EXPECT_EQ(points.cloud().position_type, ScalarType::float64);
+}
+
+TEST(MapPoints, LieOnTheSurfaceWithItsNormals) {
+  const MapTile ball = test::ball_tile(3, 0.25, true);
+  const auto points = map_points({ball}, 0.1, 100000);
+  ASSERT_TRUE(points);
+  EXPECT_TRUE(points->complete());
+  // 4 pi 9 m2; where cubes' surfaces end slanted cells reach over each other.
+  EXPECT_GT(points->seen(), 8000u);
+  for (const SurfacePoint& point : points->points()) {
+    const Vec3 normal{point.normal[0], point.normal[1], point.normal[2]};
+    EXPECT_NEAR(norm(point.position), 3, 0.03);
+    EXPECT_GT(std::abs(dot(normal, point.position)) / 3, 0.98);
+  }
 }
 
 }  // namespace
