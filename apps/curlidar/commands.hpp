@@ -21,6 +21,7 @@ Command add_sensors(CLI::App& root);
 Command add_calibrate(CLI::App& root);
 Command add_demo(CLI::App& root);
 Command add_register(CLI::App& root);
+Command add_map(CLI::App& root);
 Command add_report(CLI::App& root);
 
 }  // namespace curlidar::app

@@ -32,7 +32,7 @@ std::vector<Command> add_commands(CLI::App& root) {
   std::vector<Command> commands;
   for (auto* add : {add_encode, add_decode, add_verify, add_info, add_compare, add_render,
                     add_convert, add_project, add_mesh, add_upsample, add_simulate, add_sensors,
-                    add_calibrate, add_demo, add_register, add_report}) {
+                    add_calibrate, add_demo, add_register, add_map, add_report}) {
     commands.push_back(add(root));
   }
   return commands;

@@ -133,7 +133,9 @@ struct MapBuildSettings {
   /// Maps of scans: how each is encoded. Its limits of range are those of the header.
   EncodeSettings scan{};
   std::size_t max_samples = 3'000'000;  ///< held at once, 100 bytes or so each; others wait on disk
-  std::size_t threads = 1;              ///< never changes the bytes; 0 = all cores
+  /// Surface maps: leaves out samples that the beams of more scans went through than saw them.
+  bool still = false;
+  std::size_t threads = 1;  ///< never changes the bytes; 0 = all cores
 };
 
 /// What building came to.
@@ -144,6 +146,7 @@ struct MapReport {
   std::size_t samples = 0;                ///< that the tiles were made from
   std::size_t explained = 0;              ///< of them already on the surface that is appended to
   std::size_t tiles = 0, tiles_kept = 0;  ///< written; of them copied as they were
+  std::size_t moved = 0;                  ///< samples left out as of things that moved
   std::size_t most_samples = 0;           ///< held at once
   std::vector<std::string> notes;         ///< what a user should know, one sentence each
 };

@@ -10,6 +10,7 @@
 #include "format/indexed_file.hpp"
 #include "mapfile/map_header.hpp"
 #include "mapfile/spill_file.hpp"
+#include "mapfile/still_filter.hpp"
 #include "mapfile/tile_store.hpp"
 #include "mapfile/tile_writer.hpp"
 
@@ -43,6 +44,7 @@ struct MapBuilder::State {
   std::shared_ptr<const MapFile> old;
   bool origin_known = false;
   TileStore store;
+  StillFilter still;
   SpillFile scans;
   std::vector<WaitingScan> waiting;
   MapReport report;
@@ -146,6 +148,7 @@ Status MapBuilder::State::add_surface(const Cloud& cloud, const RigidMotion& T_m
                                              : std::numeric_limits<float>::quiet_NaN();
     CURLIDAR_TRY(store.add(T_map_sensor(p) - header.origin, bright));
   }
+  if (settings.still) CURLIDAR_TRY(still.add_scan(cloud.positions, T_map_sensor));
   return store.settle();
 }
 
@@ -199,7 +202,8 @@ Result<MapReport> MapBuilder::finish(const std::string& path, const ProgressCall
                   path, surface ? IndexedKind::surface_map : IndexedKind::scan_map, header));
   state.report.most_samples = state.store.most_samples();
   if (surface) {
-    CURLIDAR_TRY(write_tiles(state.store, state.old.get(), state.header, writer,
+    CURLIDAR_TRY(write_tiles(state.store, state.old.get(),
+                             state.settings.still ? &state.still : nullptr, state.header, writer,
                              state.settings.threads, state.report, progress));
   } else {
     CURLIDAR_TRY(state.write_scans(writer));

@@ -40,13 +40,14 @@ struct ReadyTile {
 
 class TileMaker {
  public:
-  TileMaker(TileStore& store, const MapFile* old, const MapHeader& header)
-      : store_(store), old_(old), header_(header) {}
+  TileMaker(const MapFile* old, const MapHeader& header) : old_(old), header_(header) {}
 
-  Result<ReadyTile> make(TileKey key, const TileSource& source) const {
+  Result<ReadyTile> make(TileKey key, const TileSource& source,
+                         std::vector<MapSample> samples) const {
     if (!source.in_store) return keep(*source.in_old, {});
     ReadyTile ready;
-    CURLIDAR_TRY_ASSIGN(samples, store_.take(key));
+    if (samples.empty() && !source.in_old) return ready;
+    if (samples.empty()) return keep(*source.in_old, {});
     if (source.in_old) {
       const auto tile = old_->read_tile(*source.in_old);
       if (tile) {
@@ -88,10 +89,29 @@ class TileMaker {
     return ready;
   }
 
-  TileStore& store_;
   const MapFile* old_;
   const MapHeader& header_;
 };
+
+/// The samples of a tile, without those of things that moved.
+Result<std::vector<MapSample>> still_samples(TileStore& store, TileKey key,
+                                             const StillFilter* still, const MapHeader& header,
+                                             MapReport& report) {
+  CURLIDAR_TRY_ASSIGN(samples, store.take(key));
+  if (still == nullptr) return samples;
+  std::vector<Vec3> points;
+  points.reserve(samples.size());
+  for (const MapSample& sample : samples) {
+    points.push_back(tile_origin(key, header) + sample.position);
+  }
+  CURLIDAR_TRY_ASSIGN(moved, still->moved(points));
+  std::vector<MapSample> kept;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (moved[i] == 0) kept.push_back(samples[i]);
+  }
+  report.moved += samples.size() - kept.size();
+  return kept;
+}
 
 Status write_ready(ReadyTile& ready, IndexedWriter& writer, MapReport& report) {
   report.samples += ready.samples;
@@ -105,19 +125,27 @@ Status write_ready(ReadyTile& ready, IndexedWriter& writer, MapReport& report) {
 
 }  // namespace
 
-Status write_tiles(TileStore& store, const MapFile* old, const MapHeader& header,
-                   IndexedWriter& writer, std::size_t threads, MapReport& report,
-                   const ProgressCallback& progress) {
+Status write_tiles(TileStore& store, const MapFile* old, const StillFilter* still,
+                   const MapHeader& header, IndexedWriter& writer, std::size_t threads,
+                   MapReport& report, const ProgressCallback& progress) {
   const auto sources = sources_of(store, old);
-  const TileMaker maker(store, old, header);
+  const TileMaker maker(old, header);
   const std::size_t batch = resolve_threads(threads);
   std::size_t done = 0;
   for (auto next = sources.begin(); next != sources.end();) {
     std::vector<std::pair<TileKey, TileSource>> work;
-    for (; next != sources.end() && work.size() < batch; ++next) work.push_back(*next);
+    std::vector<std::vector<MapSample>> samples;
+    for (; next != sources.end() && work.size() < batch; ++next) {
+      work.push_back(*next);
+      samples.emplace_back();
+      if (!next->second.in_store) continue;
+      CURLIDAR_TRY_ASSIGN(taken, still_samples(store, next->first, still, header, report));
+      samples.back() = std::move(taken);
+    }
     std::vector<Result<ReadyTile>> ready(work.size(), ReadyTile{});
-    parallel_for(work.size(), threads,
-                 [&](std::size_t i) { ready[i] = maker.make(work[i].first, work[i].second); });
+    parallel_for(work.size(), threads, [&](std::size_t i) {
+      ready[i] = maker.make(work[i].first, work[i].second, std::move(samples[i]));
+    });
     for (Result<ReadyTile>& tile : ready) {
       if (!tile) return tile.error();
       CURLIDAR_TRY(write_ready(*tile, writer, report));
