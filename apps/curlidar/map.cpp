@@ -8,6 +8,7 @@
 #include <charconv>
 
 #include "commands.hpp"
+#include "common_maps.hpp"
 
 namespace curlidar::app {
 namespace {
@@ -53,7 +54,8 @@ Command add_map(CLI::App& root) {
   app->footer(kMapFooter);
   app->require_subcommand(1);
   std::vector<Command> commands;
-  for (auto* add : {add_map_build, add_map_append, add_map_info, add_map_extract}) {
+  for (auto* add : {add_map_build, add_map_append, add_map_info, add_map_extract, add_map_sample,
+                    add_map_compare, add_map_render}) {
     commands.push_back(add(*app));
   }
   return {app, [commands] {
