@@ -56,7 +56,9 @@ int run(const Options& options) {
   SimulateSettings settings = options.simulate;
   settings.threads = options.common.threads;
   if (options.drive.drive) {
-    return run_drive(options.common, options.drive, settings, sensor, options.output);
+    DriveOptions drive = options.drive;
+    drive.to_format = options.to_format;
+    return run_drive(options.common, drive, settings, sensor, options.output);
   }
   const auto scene = need_option(make_scene(options.scene, settings.seed));
   const Lattice lattice = truth_lattice(options, sensor);

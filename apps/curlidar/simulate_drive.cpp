@@ -56,6 +56,31 @@ void make_folders(const std::filesystem::path& scans) {
   }
 }
 
+/// The name's end by which a scan of a drive tells its format.
+const char* scan_suffix(CloudFormat format) {
+  switch (format) {
+    case CloudFormat::kitti:
+      return ".bin";
+    case CloudFormat::nuscenes:
+      return ".pcd.bin";
+    case CloudFormat::ply:
+      return ".ply";
+    case CloudFormat::npy:
+      return ".npy";
+    case CloudFormat::csv:
+      return ".csv";
+    case CloudFormat::pcd:
+      break;
+  }
+  return ".pcd";
+}
+
+/// KITTI's and nuScenes' files have columns for some attributes only.
+void fit_columns(Cloud& cloud, CloudFormat format) {
+  if (format == CloudFormat::kitti) keep_attributes(cloud, {{"intensity"}});
+  if (format == CloudFormat::nuscenes) keep_attributes(cloud, {{"intensity", "ring"}});
+}
+
 Json drive_json(const Drive& drive, const DriveOptions& options, const SensorProfile& sensor,
                 const std::string& folder) {
   return {{"output", folder},
@@ -69,9 +94,10 @@ Json drive_json(const Drive& drive, const DriveOptions& options, const SensorPro
 
 void add_drive_options(CLI::App& app, DriveOptions& options) {
   const char* group = "A drive";
-  app.add_flag("--drive", options.drive,
-               "Many scans of a car that drives around a block of houses: -o is a directory, which "
-               "gets scans/*.bin, poses.txt (rows of T_map_sensor) and times.txt")
+  app.add_flag(
+         "--drive", options.drive,
+         "Many scans of a car that drives around a block of houses: -o is a directory, which "
+         "gets scans/*.bin (or of --to-format), poses.txt (rows of T_map_sensor) and times.txt")
       ->group(group);
   app.add_option("--scans", options.settings.scans, "Scans")
       ->capture_default_str()
@@ -89,6 +115,11 @@ void add_drive_options(CLI::App& app, DriveOptions& options) {
       ->group(group);
   app.add_flag("--still", options.settings.still, "The sensor stands, others move")->group(group);
   app.add_flag("--no-traffic", options.no_traffic, "Nothing else moves")->group(group);
+  app.add_flag(
+         "--moving", options.moving,
+         "Add the attribute moving to the scans: 1 where a point lies on something that moves "
+         "(--to-format pcd, ply, npy or csv)")
+      ->group(group);
   app.add_flag("--truth", options.truth,
                "Also truth.ply: the exact surface that the scans have seen, without what moves, a "
                "point every 5 cm")
@@ -99,17 +130,24 @@ int run_drive(const CommonOptions& common, const DriveOptions& options,
               const SimulateSettings& simulate, const SensorProfile& sensor,
               const std::string& folder) {
   if (folder == "-") usage_error("--drive makes a directory: name it with -o");
+  const CloudFormat format = parse_format(options.to_format).value_or(CloudFormat::kitti);
+  if (options.moving && (format == CloudFormat::kitti || format == CloudFormat::nuscenes)) {
+    usage_error("--moving: the format of the scans has no place for it; add --to-format pcd");
+  }
   DriveSettings settings = options.settings;
   settings.traffic = !options.no_traffic;
   settings.seed = simulate.seed;
   const Drive drive = need_option(Drive::make(settings));
   SimulateSettings shot = simulate;
   shot.beam_origins = true;
+  shot.mark_moving = options.moving;
   SensorProfile sparser = sensor;
   sparser.columns = std::max<std::uint32_t>(sensor.columns / kTruthColumns, 1);
 
   const std::filesystem::path root(folder);
   make_folders(root / "scans");
+  WriteOptions write_options;
+  write_options.format = format;
   PoseTrack track;
   Thinned truth;
   std::size_t points = 0;
@@ -117,9 +155,10 @@ int run_drive(const CommonOptions& common, const DriveOptions& options,
   for (std::size_t i = 0; i < drive.scans(); ++i) {
     bar.update(i, drive.scans(), "simulate", 0);
     Cloud cloud = need(drive.scan(i, sensor, shot));
-    keep_attributes(cloud, {{"intensity"}});  // what KITTI's files hold
+    fit_columns(cloud, format);
     points += cloud.size();
-    save_cloud((root / "scans" / fmt::format("{:06}.bin", i)).string(), cloud, {});
+    const std::string name = fmt::format("{:06}{}", i, scan_suffix(format));
+    save_cloud((root / "scans" / name).string(), cloud, write_options);
     track.T_map_sensor.push_back(drive.T_map_sensor(i));
     track.time_s.push_back(drive.time_s(i));
     if (options.truth) truth.add(need(drive.truth(i, sparser, shot)));

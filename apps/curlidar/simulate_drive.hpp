@@ -10,7 +10,8 @@
 namespace curlidar::app {
 
 struct DriveOptions {
-  bool drive = false, truth = false, no_traffic = false;
+  bool drive = false, truth = false, no_traffic = false, moving = false;
+  std::string to_format;  ///< of the scans; empty: KITTI's, which hold intensity alone
   DriveSettings settings;
 };
 

@@ -41,7 +41,8 @@ class Drive {
   RigidMotion T_map_sensor(std::size_t scan) const;
   double time_s(std::size_t scan) const;
 
-  /// What the sensor measures, in its own frame, as simulate(). Noise differs from scan to scan.
+  /// What the sensor measures, in its own frame, as simulate(). Noise differs from scan to scan;
+  /// SimulateSettings::mark_moving tells what moves.
   Result<Cloud> scan(std::size_t scan, const SensorProfile& sensor,
                      const SimulateSettings& settings = {}) const;
   /// The exact surface of what stands still along the same beams, things that move taken away, in

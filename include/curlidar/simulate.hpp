@@ -17,9 +17,10 @@ namespace curlidar {
 
 /// What a ray met.
 struct Hit {
-  double range_m = 0;         ///< along the unit direction
-  double reflectivity = 0;    ///< of the surface, [0, 1]
-  double cos_incidence = 0;   ///< |cos| of the angle to the surface normal
+  double range_m = 0;        ///< along the unit direction
+  double reflectivity = 0;   ///< of the surface, [0, 1]
+  double cos_incidence = 0;  ///< |cos| of the angle to the surface normal
+  bool moving = false;       ///< belongs to a thing that moves (curlidar/drive.hpp)
 };
 
 /// An analytic world around the sensor, which stands at the origin of its own frame.
@@ -45,9 +46,10 @@ struct SimulateSettings {
   /// to the left of the beam; range limits, noise and rounding then apply to the distance from
   /// the beam's origin plus beam_origin_radius_m, as Ouster's sensors count it.
   bool beam_origins = false;
+  bool mark_moving = false;      ///< adds the attribute moving (uint8): 1 on things that move
   double turns_per_second = 10;  ///< of the time attribute; the sensor does not move
   std::uint64_t seed = 1;
-  std::size_t threads = 1;      ///< never changes the result
+  std::size_t threads = 1;  ///< never changes the result
 };
 
 /// One turn of the sensor: unorganised, ring by ring from the top, with attributes intensity

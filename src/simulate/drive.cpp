@@ -34,7 +34,10 @@ class SceneFromPose final : public Scene {
     Hit other;
     const bool found = still_.cast(from, along, hit);
     const bool moves = moving_ != nullptr && moving_->cast(from, along, other);
-    if (moves && (!found || other.range_m < hit.range_m)) hit = other;
+    if (moves && (!found || other.range_m < hit.range_m)) {
+      hit = other;
+      hit.moving = true;
+    }
     return found || moves;
   }
 

@@ -22,6 +22,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 struct Echo {
   Vec3 position{};
   float intensity = 0;
+  bool moving = false;
 };
 
 enum Stream : std::uint64_t { dropout_stream, radius_stream, angle_stream };
@@ -74,6 +75,7 @@ class Shooter {
     if (draw(ring_index, column, dropout_stream) < settings_.dropout) return false;
     echo.position = origin + direction * (range - lead);
     echo.intensity = static_cast<float>(hit.reflectivity * hit.cos_incidence);
+    echo.moving = hit.moving;
     return is_return(echo.position);
   }
 
@@ -108,10 +110,12 @@ Vec3 to_float(const Vec3& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-Cloud collect(const std::vector<std::vector<Return>>& rings, double seconds_per_column) {
+Cloud collect(const std::vector<std::vector<Return>>& rings, double seconds_per_column,
+              bool mark_moving) {
   Cloud cloud;
   std::vector<float> intensity, time;
   std::vector<std::uint16_t> ring_of;
+  std::vector<std::uint8_t> moving;
   std::size_t total = 0;
   for (const auto& ring : rings) total += ring.size();
   cloud.positions.reserve(total);
@@ -123,6 +127,7 @@ Cloud collect(const std::vector<std::vector<Return>>& rings, double seconds_per_
       cloud.positions.push_back(to_float(back.echo.position));
       intensity.push_back(back.echo.intensity);
       ring_of.push_back(static_cast<std::uint16_t>(r));
+      if (mark_moving) moving.push_back(back.echo.moving ? 1 : 0);
       time.push_back(static_cast<float>(back.column * seconds_per_column));
     }
   }
@@ -130,6 +135,7 @@ Cloud collect(const std::vector<std::vector<Return>>& rings, double seconds_per_
   cloud.attributes = {{"intensity", 1, std::move(intensity)},
                       {"ring", 1, std::move(ring_of)},
                       {"time", 1, std::move(time)}};
+  if (mark_moving) cloud.attributes.push_back({"moving", 1, std::move(moving)});
   return cloud;
 }
 
@@ -172,7 +178,8 @@ Result<Cloud> simulate(const Scene& scene, const SensorProfile& sensor,
       if (shooter.fire(ring, column, echo)) rings[ring].push_back({column, echo});
     }
   });
-  Cloud cloud = collect(rings, 1 / (settings.turns_per_second * sensor.columns));
+  Cloud cloud =
+      collect(rings, 1 / (settings.turns_per_second * sensor.columns), settings.mark_moving);
   cloud.metadata["source"] =
       fmt::format("simulated, sensor {}, seed {}", sensor.name, settings.seed);
   return cloud;

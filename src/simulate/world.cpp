@@ -24,6 +24,7 @@ bool World::cast(const Vec3& origin, const Vec3& direction, Hit& hit) const {
     met_normal = normal;
   });
   if (met == nullptr) return false;
+  hit.moving = false;
   hit.range_m = range;
   hit.reflectivity = met->reflectivity;
   const double length = norm(met_normal);

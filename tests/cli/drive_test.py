@@ -31,6 +31,27 @@ class DriveTest(CommandTest):
             self.assertEqual(self.path(f"a/{name}").read_bytes(),
                              self.path(f"b/{name}").read_bytes())
 
+    def test_scans_say_what_moves(self):
+        self.run_ok("simulate", *self.OPTIONS, "--moving", "--to-format", "csv", "-q", "-o", "m")
+        self.assertEqual(self.files("m/scans"), ["000000.csv", "000001.csv", "000002.csv"])
+        shares = []
+        for name in self.files("m/scans"):
+            names, *lines = self.path(f"m/scans/{name}").read_text().splitlines()
+            column = names.split(",").index("moving")
+            marks = [line.split(",")[column] for line in lines]
+            self.assertLessEqual(set(marks), {"0", "1"})
+            shares.append(marks.count("1") / len(marks))
+        self.assertGreater(max(shares), 0)
+        self.assertLess(max(shares), .3)
+        self.run_fail(USAGE, "simulate", *self.OPTIONS, "--moving", "-o", "n", says="--to-format")
+
+    def test_true_poses_need_no_refinement(self):
+        self.run_ok("simulate", "--drive", "--sensor", "vlp16", "--scans", "3", "-q", "-o", "r")
+        refined = self.run_json("register", "r/scans", "--poses", "r/poses.txt", "-o", "r.txt")
+        for scan in refined["scans"]:
+            self.assertIsNone(scan["doubt"])
+            self.assertLess(scan["correction_m"], .05)
+
     def test_drives_need_a_folder(self):
         self.run_fail(USAGE, "simulate", *self.OPTIONS, "-o", "-", says="directory")
         self.path("file").write_text("x")

@@ -76,6 +76,33 @@ TEST(Drive, WhatMovesIsInScansAndNotInTheTruth) {
   EXPECT_GE(hidden, 6u);
 }
 
+TEST(Drive, MarksTellWhatMoves) {
+  const Drive drive = made({.scans = 4, .step_m = 15});
+  SimulateSettings marked = kExact;
+  marked.mark_moving = true;
+  std::size_t moving = 0;
+  for (std::size_t i = 0; i < drive.scans(); ++i) {
+    const Cloud scan = drive.scan(i, sensor(), marked).value();
+    const Cloud truth = drive.truth(i, sensor(), kExact).value();
+    const RigidMotion pose = drive.T_map_sensor(i);
+    const Attribute* marks = scan.find("moving");
+    ASSERT_NE(marks, nullptr);
+    // Both lists follow the beams; the scan may have more, where a mover hides the sky.
+    std::size_t at = 0;
+    for (std::size_t k = 0; k < scan.size(); ++k) {
+      if (marks->as_double(k) != 0) {
+        ++moving;
+        continue;
+      }
+      const Vec3 p = pose(scan.positions[k]);
+      while (at < truth.size() && norm(truth.positions[at] - p) > 1e-4) ++at;
+      ASSERT_LT(at, truth.size()) << i << ' ' << k;
+    }
+    EXPECT_EQ(drive.scan(i, sensor(), kExact).value().find("moving"), nullptr);
+  }
+  EXPECT_GT(moving, 5u);
+}
+
 TEST(Drive, AStillSensorSeesOthersMove) {
   const Drive drive = made({.scans = 20, .still = true});
   EXPECT_EQ(drive.T_map_sensor(0), drive.T_map_sensor(19));
