@@ -7,7 +7,9 @@ if(CMAKE_SCRIPT_MODE_FILE)
   foreach(path ${files})
     get_filename_component(name ${path} NAME_WE)
     file(READ ${path} text)
-    string(APPEND entries "    {\"${name}\", R\"text(${text})text\"},\n")
+    # The length is given because compilers count no further than a million steps.
+    string(LENGTH "${text}" length)
+    string(APPEND entries "    {\"${name}\", {R\"text(${text})text\", ${length}}},\n")
   endforeach()
   file(WRITE ${OUTPUT}
     "// Generated from ${FILES}; edit those.\n"
