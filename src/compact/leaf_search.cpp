@@ -80,6 +80,11 @@ class LeafSearch {
     return all;
   }
 
+  /// Parents that corrections are fitted on; those of a guide come before the others.
+  std::uint32_t fitted_parents() const {
+    return settings_.fitted_parents + (context_.warp != 0 ? 2 : 0);
+  }
+
   /// Most functions (place in kFunctions) worth trying on so many returns.
   std::uint32_t most_functions(std::size_t members) const {
     std::uint32_t most = settings_.max_functions;
@@ -193,7 +198,7 @@ void LeafSearch::try_one_layer() {
   LayerFit plain(state_, context_, frame_, samples_, all, {});
   for (std::uint32_t parent = 0; parent <= context_.parents.count; ++parent) {
     for (std::uint32_t functions = parent == 0 ? 1 : 0; functions <= most; ++functions) {
-      if (parent > settings_.fitted_parents && functions > 0) break;
+      if (parent > fitted_parents() && functions > 0) break;
       auto layer = plain.fit(parent, functions);
       if (!layer) continue;
       consider_one(*layer);
@@ -224,7 +229,7 @@ std::optional<FittedLayer> LeafSearch::best_layer(const Members& members, std::u
   LayerFit fit(state_, context_, frame_, samples_, members, {});
   for (std::uint32_t parent = 0; parent <= context_.parents.count; ++parent) {
     for (std::uint32_t functions = parent == 0 ? 1 : 0; functions <= most; ++functions) {
-      if (parent > settings_.fitted_parents && functions > 0) break;
+      if (parent > fitted_parents() && functions > 0) break;
       const auto code = fit.fit(parent, functions);
       if (!code) continue;
       sink_.clear();

@@ -196,8 +196,8 @@ EncodedSegment encode_segment(const Image& image, const RowTable& table,
                   ranges[cell] = image.range[from];
                   truth[cell] = clamp_range(std::int64_t{image.range[from]} - offset);
                 });
-  out.mask = encode_mask(scan.occupied, mask_shape(table, place), effort.thorough_mask,
-                         guide ? &*guide : nullptr);
+  out.mask = encode_mask(scan.occupied, mask_shape(table, place),
+                         effort.thorough_mask || guide.has_value(), guide ? &*guide : nullptr);
 
   const Geometry geometry = geometry_of(table, place);
   FieldState state(geometry, scan.occupied, field_settings(parameters), guide ? &*guide : nullptr);

@@ -42,7 +42,7 @@ class FieldModels:
         self.models = prior_models("field", models)
         self.weights = prior_weights("field_mix", 4 * sets, 65536 * 5 // 16)
 
-    def decide(self, name, contexts, weight_set):
+    def decide(self, name, contexts, weight_set, _label=None):
         starts, sizes, first_set, sets = self.kinds[name]
         assert all(0 <= c < size for c, size in zip(contexts, sizes)) and 0 <= weight_set < sets
         models = [self.models[start + c] for start, c in zip(starts, contexts)]
@@ -135,9 +135,10 @@ class Field:
     """Decodes on construction. `known`: cell -> Known, for every occupied cell, or, if not
     `complete`, for those of the roots that no missing byte could change."""
 
+    parent_stride = 6
+
     def __init__(self, decoder, window, occupied, root_log2, smallest_leaf, cut=False):
         self.models = FieldModels(decoder)
-        self.decide = self.models.decide
         self.window = window
         self.occupied = occupied
         self.smallest_leaf = smallest_leaf
@@ -158,8 +159,14 @@ class Field:
                     self.complete = False
                     return
 
+    def decide(self, name, contexts, weight_set, label=None):
+        return self.models.decide(name, contexts, weight_set, label)
+
+    def _new_block(self, row, column, h, w):
+        return Block(self, row, column, h, w)
+
     def _block(self, row, column, h, w):
-        block = Block(self, row, column, h, w)
+        block = self._new_block(row, column, h, w)
         if not block.cells:
             return
         split = self._split(block)
@@ -242,7 +249,7 @@ class Field:
             r = parent.plane_range(b.middle)
             plane = parent.plane
         q = self._coefficients(b, f, fresh, late)
-        return with_functions(plane, patch, f, q, step_40((1 << 46) // r, step))
+        return self._surface(plane, patch, f, q, step_40((1 << 46) // r, step))
 
     def _parent(self, b, layers, late, used):
         """The parent's surface, None for a new one."""
@@ -257,7 +264,7 @@ class Field:
             return None
         k = 0
         while k < count - 1:
-            a = 2 * (6 * k + count - 1) + late
+            a = 2 * (self.parent_stride * k + count - 1) + late
             y = 1 if k in used else 0
             contexts = (a, 2 * a + y, 5 * a + b.spread,
                         2 * (3 * b.parents[k].functions + min(k, 2)) + y)
@@ -266,6 +273,9 @@ class Field:
             k += 1
         used.append(k)
         return b.parents[k]
+
+    def _surface(self, plane, patch, f, q, step):
+        return with_functions(plane, patch, f, q, step)
 
     def _function_count(self, b, layers, late, parent, fresh):
         f0 = 0 if fresh else parent.functions

@@ -54,6 +54,9 @@ class _Label:
         nearer = [r < self.ranges[first] for k, r in enumerate(self.ranges) if k != first]
         return 2 if not any(nearer) else 0 if all(nearer) else 1
 
+    def about(self, layer):
+        return (self.row, self.column), self.ranges, layer
+
     def decode(self):
         W, N, NW, NE, WW, NN = (0, -1), (1, 0), (1, -1), (1, 1), (0, -2), (2, 0)
         first = next((a for a in map(lambda c: self.at(*c), (W, N, NW, NE)) if a is not None), 0)
@@ -73,7 +76,8 @@ class _Label:
         decide = self.field.decide
         if decide("label_first", (3 * (2 * pattern + known) + x,
                                   27 * (3 * min(gap, 5) + nearer) + pattern, 27 * pattern + wide,
-                                  3 * (4 * run + rise) + nearer), 3 * x + self.on(W, first)):
+                                  3 * (4 * run + rise) + nearer), 3 * x + self.on(W, first),
+                  self.about(first)):
             return first
         if self.count == 2:
             return 1 - first
@@ -81,7 +85,8 @@ class _Label:
         if second is not None:
             pattern2 = pattern_of(second, (NW, NE, N))
             if decide("label_second", (3 * pattern2 + x, 2 * pattern2 + x - 1,
-                                       3 * pattern + nearer, 4 * (3 * gap + nearer) + run), x):
+                                       3 * pattern + nearer, 4 * (3 * gap + nearer) + run), x,
+                      self.about(second)):
                 return second
             left -= 1
         for k in range(self.count):
@@ -90,7 +95,7 @@ class _Label:
             if left == 1:
                 return k
             a = 4 * (2 * x + left - 2) + k
-            if decide("label_rest", (a, a, nearer, a), 0):
+            if decide("label_rest", (a, a, nearer, a), 0, self.about(k)):
                 return k
             left -= 1
         raise AssertionError("no layer is left")

@@ -5,7 +5,7 @@ from integers import clip
 
 RUN = (0, 1, 2, 3, 4, 4, 5, 5, 5, 6, 6, 6, 6, 6, 6, 6, 7)
 REACH = (0, 1, 2, 3, 4, 4, 4, 5, 5, 5, 5, 6, 6, 6, 6, 6, 7)
-MODELS, CONTEXTS, SETS, INPUTS = 8, 1024, 128, 48
+MODELS, CONTEXTS, SETS = 8, 1024, 128
 MOST_WEIGHT = 8388352
 # start from priors, visits at most, rate
 WAYS = ((True, 255, 5), (True, 255, 14), (True, 6, 10), (False, 0, 10))
@@ -86,6 +86,8 @@ class _Around:
 class MaskDecoder:
     """Decodes on construction: `rows`, lists of 0 and 1; the complete ones first, then zeros."""
 
+    models_of, more_cells, tables = MODELS, 0, ("mask", "mask_mix")
+
     def __init__(self, data, rows, columns, turn, cut=False):
         self.columns, self.turn = columns, turn
         self.rows = []
@@ -97,12 +99,17 @@ class MaskDecoder:
         for i in range(rows):
             self.rows.append([0] * columns)
             for j in range(columns):
-                self.rows[i][j] = self._cell(_Around(self, i, j))
+                around = _Around(self, i, j)
+                self.rows[i][j] = self._cell(around, *self.hints(i, j, around))
             if self.decoder.exhausted or (cut and self.decoder.read >= len(data)):
                 self.complete_rows = i
                 break
         self.rows = [*self.rows[:self.complete_rows],
                      *([0] * columns for _ in range(rows - self.complete_rows))]
+
+    def hints(self, _i, _j, _around):
+        """Further contexts, cells, and sets."""
+        return (), [], ()
 
     def cell(self, row, column):
         if row < 0:
@@ -114,22 +121,26 @@ class MaskDecoder:
     def _start(self, way):
         priors, visits, self.rate = WAYS[way]
         if priors:
-            models = prior_models("mask", MODELS * CONTEXTS)
+            models = prior_models(self.tables[0], self.models_of * CONTEXTS)
             self.models = [[p, min(v, visits)] for p, v in models]
             self.weights = [clip(256 * w, -MOST_WEIGHT, MOST_WEIGHT)
-                            for w in weight_words("mask_mix")]
+                            for w in weight_words(self.tables[1])]
         else:
-            self.models = [[32768, 0] for _ in range(MODELS * CONTEXTS)]
-            self.weights = ([163840] * 8 + [0] * 40) * SETS
+            self.models = [[32768, 0] for _ in range(self.models_of * CONTEXTS)]
+            usual, more = (5 << 20) // (4 * self.models_of), self.models_of - MODELS
+            sets = SETS + (64 if more else 0)
+            self.weights = ([usual] * 8 + [0] * (40 + self.more_cells) + [usual] * more) * sets
 
-    def _cell(self, around):
-        models = [self.models[CONTEXTS * m + c] for m, c in enumerate(around.contexts())]
-        x = [stretch(model[0]) for model in models]
-        x += [128 if cell else -128 for cell in around.cells()]
-        starts = [INPUTS * s for s in around.sets()]
-        d = [clip((sum((w + 128 >> 8) * s for w, s in zip(self.weights[start:start + INPUTS], x))
+    def _cell(self, around, contexts, cells, sets):
+        models = [self.models[CONTEXTS * m + c]
+                  for m, c in enumerate((*around.contexts(), *contexts))]
+        x = [stretch(model[0]) for model in models[:MODELS]]
+        x += [128 if cell else -128 for cell in [*around.cells(), *cells]]
+        x += [stretch(model[0]) for model in models[MODELS:]]
+        starts = [len(x) * s for s in (*around.sets(), *sets)]
+        d = [clip((sum((w + 128 >> 8) * s for w, s in zip(self.weights[start:start + len(x)], x))
                    + 2048) >> 12, -MOST, MOST) for start in starts]
-        bit = self.decoder.decode(squash((sum(d) * 21845 + 32768) >> 16))
+        bit = self.decoder.decode(squash((sum(d) * ((65536 + len(d) // 2) // len(d)) + 32768) >> 16))
         for start, total in zip(starts, d):
             e = (65536 if bit else 0) - squash(total)
             if abs(e) < 256:

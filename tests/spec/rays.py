@@ -109,6 +109,22 @@ class Rays:
         heights = [ray[1] for ray in self.rays]
         self.centre = sum(heights) // rows
 
+    @classmethod
+    def times(cls, payload, before, columns):
+        """The rays of a scan that has its own firings and motion only."""
+        rays = cls.__new__(cls)
+        for name in ("table", "unit", "slots", "elevation", "rays", "centre"):
+            setattr(rays, name, getattr(before, name))
+        flags = payload[0]
+        if flags & ~6:
+            raise Unsupported("compact_rays: flags of a later version")
+        _need(flags != 4, "flags")
+        decoder = RangeDecoder(payload[1:])
+        rays._firings(decoder, columns)
+        rays._motion(decoder, 6 if flags & 4 else 2 if flags & 2 else 0)
+        _need(not decoder.exhausted and decoder.read >= len(payload) - 1, "size")
+        return rays
+
     @staticmethod
     def _beams(decoder, rows):
         columns = [sequence(decoder, rows, True, 1 << 30)]

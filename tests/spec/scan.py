@@ -29,6 +29,7 @@ class Scan:
         p = self.parameters
         self.range, self.field, self.surface = (
             [[empty] * p.columns for _ in range(p.rows)] for empty in (0, 0, -1))
+        self.planes = {}  # of the cells that have a range
         surfaces = 0
         layers = [self._layer(chunks, kind) for kind in LAYERS]
         if field_only:
@@ -84,7 +85,7 @@ class Scan:
         mask_chunk, field_chunk, residual_chunk = parts
         if mask_chunk is None:
             return 0
-        mask = MaskDecoder(mask_chunk.payload, rows, columns, p.turn_columns, not mask_chunk.whole)
+        mask = self._mask(mask_chunk, place)
         _sound(mask_chunk, mask.complete_rows == rows, "mask")
         if mask.complete_rows < rows or field_chunk is None:
             return 0
@@ -93,17 +94,26 @@ class Scan:
         else:
             window = Window(self.table.elevation[row:row + rows], p.turn_columns,
                             p.first_column + column, columns, p.step)
-        decoder = RangeDecoder(field_chunk.payload)
-        field = Field(decoder, window, mask.rows, p.root_log2, p.smallest_leaf,
-                      not field_chunk.whole)
+        field = self._field(field_chunk, window, mask, place)
         _sound(field_chunk, field.complete, "field")
         for (i, j), cell in field.known.items():
             range_ = clip(cell.range + self.offsets[row + i], 1, TOP)
             self.field[row + i][column + j] = self.range[row + i][column + j] = range_
             self.surface[row + i][column + j] = first_surface + cell.number
+            self.planes[row + i, column + j] = window.in_cell(cell.surface, i, j).plane
         if residual_chunk is not None and field.complete:
             self._residual(residual_chunk, field, place)
         return field.surfaces
+
+    def _mask(self, chunk, place):
+        _, _, rows, columns = place
+        return MaskDecoder(chunk.payload, rows, columns, self.parameters.turn_columns,
+                           not chunk.whole)
+
+    def _field(self, chunk, window, mask, place):
+        p = self.parameters
+        return Field(RangeDecoder(chunk.payload), window, mask.rows, p.root_log2, p.smallest_leaf,
+                     not chunk.whole)
 
     def _residual(self, chunk, field, place):
         row, column, rows, _ = place

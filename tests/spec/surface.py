@@ -27,6 +27,11 @@ class Window:
     def cell_azimuth(self, row, column):
         return self.azimuth(column)
 
+    @staticmethod
+    def in_cell(surface, _row, _column):
+        """What a surface is in a cell."""
+        return surface
+
     def range(self, surface, row, column):
         """Of a surface in a cell."""
         return surface.range(self.direction(row, column))
