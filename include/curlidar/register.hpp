@@ -31,7 +31,9 @@ struct RegisterSettings {
   /// Without a guess, or where the guess leads to nothing, guesses up to this far ahead and behind
   /// are tried; 0: none.
   double search_m = 10;
-  double min_matched_share = 0.5;  ///< below this a result is in doubt
+  /// Below this a guess is not believed and others are tried; below half of it, or where no place
+  /// is clearly the best, a result is in doubt. Sensors of few rings have few matches.
+  double min_matched_share = 0.5;
   /// Sequences: a scan becomes part of the local map when the sensor has gone this far or turned
   /// this much since the last that did; the map holds the latest `keyframes` of them.
   double keyframe_m = 1.5, keyframe_turn_deg = 10;

@@ -57,9 +57,9 @@ Descent full_descent(const RegisterSettings& settings) {
   return {settings.first_gate_m, settings.last_gate_m, settings.iterations};
 }
 
-void judge(Registration& result, const RegisterSettings& settings) {
+void judge(Registration& result, double least_matched_share) {
   if (!result.doubt.empty()) return;
-  if (result.matched_share < settings.min_matched_share) {
+  if (result.matched_share < least_matched_share) {
     result.doubt =
         fmt::format("only {:.0f} % of the points have a match", 100 * result.matched_share);
   } else if (result.rms_m > kMost_rms_m) {
@@ -93,7 +93,7 @@ Registration align_from_many(std::span<const Vec3> source, TargetSurface& target
     }
   }
   Registration result = align(source, target, coarse, full_descent(settings), settings);
-  judge(result, settings);
+  judge(result, settings.min_matched_share / 2);
   if (result.doubt.empty() && second > kClearlyBetter * best->score) {
     result.doubt = "another place fits nearly as well";
   }

@@ -22,7 +22,7 @@ Registration align_from_many(std::span<const Vec3> source, TargetSurface& target
                              const RigidMotion& guess, const RegisterSettings& settings);
 
 /// Says in `doubt` why a result should not be trusted, if so.
-void judge(Registration& result, const RegisterSettings& settings);
+void judge(Registration& result, double least_matched_share);
 
 /// The whole descent of the settings.
 Descent full_descent(const RegisterSettings& settings);

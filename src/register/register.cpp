@@ -28,7 +28,7 @@ Result<Registration> register_pair(const Cloud& source, const Cloud& target,
   if (!guess) return registration::align_from_many(moved, surface, {}, settings);
   Registration result =
       align(moved, surface, *guess, registration::full_descent(settings), settings);
-  registration::judge(result, settings);
+  registration::judge(result, settings.min_matched_share);
   if (result.trusted() || settings.search_m <= 0) return result;
   Registration searched = registration::align_from_many(moved, surface, *guess, settings);
   return searched.trusted() ? searched : result;
@@ -83,7 +83,7 @@ struct ScanMatcher::State {
     if (!expected) return registration::align_from_many(moved, *surface, pose, settings);
     Registration result =
         align(moved, *surface, *expected, registration::full_descent(settings), settings);
-    registration::judge(result, settings);
+    registration::judge(result, settings.min_matched_share);
     if (result.trusted() || settings.search_m <= 0) return result;
     const Registration searched =
         registration::align_from_many(moved, *surface, *expected, settings);
