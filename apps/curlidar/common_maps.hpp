@@ -13,10 +13,6 @@
 
 namespace curlidar::app {
 
-Command add_map_sample(CLI::App& map);
-Command add_map_compare(CLI::App& map);
-Command add_map_render(CLI::App& map);
-
 /// Tiles of a map as far as they are whole.
 struct MapTiles {
   std::vector<MapTile> tiles;

@@ -18,6 +18,9 @@ constexpr const char* kMapFooter = R"(Examples:
   curlidar map append street.curl more/ --poses more.txt
   curlidar map info street.curl
   curlidar map extract street.curl --box -20,-20,-3,20,20,5 --density 100 -o part.ply
+  curlidar map sample street.curl --sensor vlp16 --pose 12,3,1.7,0,0,90 -o scan.pcd
+  curlidar map compare street.curl truth.ply -o errors.png
+  curlidar map render street.curl -o street.png
 'curlidar map COMMAND --help' says more.)";
 
 }  // namespace
@@ -50,7 +53,7 @@ std::vector<double> parse_numbers(const std::string& text, const char* option, s
 
 Command add_map(CLI::App& root) {
   CLI::App* app = root.add_subcommand(
-      "map", "Maps of scans with poses: build them, make them longer, take points from them");
+      "map", "Maps of scans with poses: build them, make them longer, look at them, compare them");
   app->footer(kMapFooter);
   app->require_subcommand(1);
   std::vector<Command> commands;

@@ -17,6 +17,9 @@ Command add_map_build(CLI::App& map);
 Command add_map_append(CLI::App& map);
 Command add_map_info(CLI::App& map);
 Command add_map_extract(CLI::App& map);
+Command add_map_sample(CLI::App& map);
+Command add_map_compare(CLI::App& map);
+Command add_map_render(CLI::App& map);
 
 /// The map, with warnings of what is missing; Failure.
 MapFile load_map(const std::string& path, bool allow_truncated = false);

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "commands.hpp"
 #include "common_map_pictures.hpp"
 #include "common_maps.hpp"
+#include "map.hpp"
 
 namespace curlidar::app {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "commands.hpp"
 #include "common_map_pictures.hpp"
 #include "common_maps.hpp"
+#include "map.hpp"
 
 namespace curlidar::app {
 namespace {

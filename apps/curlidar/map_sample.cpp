@@ -8,9 +8,9 @@
 #include <optional>
 #include <string>
 
-#include "commands.hpp"
 #include "common_maps.hpp"
 #include "curlidar/pose.hpp"
+#include "map.hpp"
 
 namespace curlidar::app {
 namespace {
