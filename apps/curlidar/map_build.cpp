@@ -38,7 +38,7 @@ struct BuildOptions {
 SurfaceSettings surface_of(const BuildOptions& options) {
   SurfaceSettings surface;
   if (options.quality == "fine") {
-    surface.step_m = 0.15;
+    surface.metres_per_bit = 0.05;
     surface.footprint_m = 0.125;
   } else if (options.quality != "small") {
     usage_error(fmt::format("--quality {}: it is small or fine", options.quality));

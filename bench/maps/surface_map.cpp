@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // surface_map POSES SCAN... [NAME=VALUE...]: a surface map of scans in memory, tile by tile, and
 // how near it is to them. POSES: rows of T_map_sensor, 3x4, one for each scan. Names: step bit drop
-// footprint leaf root (settings), curves intensity, every min max (scans, metres), tile (side, m),
-// voxel (of the union, m), spacing (of the map's points, m), queries.
+// footprint leaf root (settings), bare full curves intensity, every min max (scans, metres), tile
+// (side, m), voxel (of the union, m), spacing (of the map's points, m), queries.
 //
 // Prints bytes, mean distance from points to map (at most 1 m each), and shares within 5, 10, 20 cm
 // both ways with their F scores.
@@ -103,10 +103,10 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::map<std::string, double> options = {
-      {"step", 0.2},   {"bit", 0.25},     {"drop", 0.3},      {"footprint", 0.25},
-      {"leaf", 0.25},  {"root", 4},       {"curves", 0},      {"intensity", 0},
-      {"every", 1},    {"min", 2.5},      {"max", 80},        {"tile", 32},
-      {"voxel", 0.05}, {"spacing", 0.05}, {"queries", 60000}, {"first", 0}};
+      {"step", 0.1},       {"bit", 0.2},       {"bare", 60}, {"full", 25},  {"drop", 0.3},
+      {"footprint", 0.25}, {"leaf", 0.25},     {"root", 4},  {"curves", 0}, {"intensity", 0},
+      {"every", 1},        {"min", 2.5},       {"max", 80},  {"tile", 32},  {"voxel", 0.05},
+      {"spacing", 0.05},   {"queries", 60000}, {"first", 0}};
   std::vector<std::string> scans;
   for (int i = 2; i < argc; ++i) {
     const std::string text = argv[i];
@@ -153,6 +153,8 @@ int main(int argc, char** argv) {
   settings.footprint_m = options["footprint"];
   settings.smallest_leaf_m = options["leaf"];
   settings.root_m = options["root"];
+  settings.bare_samples = options["bare"];
+  settings.full_weight = options["full"];
   settings.curves = options["curves"] != 0;
   settings.intensity = options["intensity"] != 0;
   std::size_t bytes = 0, leaves = 0, samples = 0;

@@ -21,15 +21,21 @@ struct MapSample {
 struct SurfaceSettings {
   /// Planes are rounded so that their corners move by about half of this at most in leaves of half
   /// a metre; larger leaves are rounded finer.
-  double step_m = 0.2;
+  double step_m = 0.1;
   /// A bit is spent where it brings samples of weight 1 nearer to the map by this much in all.
-  double metres_per_bit = 0.25;
-  double root_m = 4;                 ///< edge of the octree's largest cubes
-  double smallest_leaf_m = 0.25;     ///< edge of its smallest
-  double footprint_m = 0.25;         ///< edge of the cells that tell where surface was seen
-  double drop_m = 0.3;               ///< a sample farther from the map than this counts as this far
-  bool curves = false;               ///< leaves may be of second order
-  bool intensity = false;            ///< a mean intensity for each leaf
+  double metres_per_bit = 0.2;
+  double root_m = 4;              ///< edge of the octree's largest cubes
+  double smallest_leaf_m = 0.25;  ///< edge of its smallest
+  double footprint_m = 0.25;      ///< edge of the cells that tell where surface was seen
+  double drop_m = 0.3;            ///< a sample farther from the map than this counts as this far
+  bool curves = false;            ///< leaves may be of second order
+  bool intensity = false;         ///< a mean intensity for each leaf
+  /// Surface where nothing was measured counts as so many left-out samples a square metre: more
+  /// keeps footprints to what was seen, less lets them close gaps where that saves bits.
+  double bare_samples = 60;
+  /// The samples of one smallest cube weigh no more than this in all: what is seen again and again
+  /// must not become dearer.
+  double full_weight = 25;
   double intensity_step = 1.0 / 32;  ///< what intensities are rounded to
 };
 

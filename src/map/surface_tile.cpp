@@ -8,25 +8,15 @@
 
 #include "base/try.hpp"
 #include "entropy/range_coder.hpp"
+#include "map/tile_encoder.hpp"
 #include "map/tile_header.hpp"
 #include "map/tile_lod.hpp"
-#include "map/tile_samples.hpp"
-#include "map/tile_search.hpp"
+#include "map/tile_tree.hpp"
 
 namespace curlidar {
 namespace {
 
 using namespace tile;
-
-/// What lies farther from a plane than this counts less and less when planes are fitted.
-constexpr double kNear_m = 0.05;
-/// Surface without samples, in left-out samples a square metre.
-constexpr double kBare = 20;
-
-TileWeighing weighing_of(const SurfaceSettings& settings) {
-  return {settings.metres_per_bit * kTicks, settings.drop_m * kTicks, kNear_m * kTicks,
-          kBare * settings.drop_m / kTicks};
-}
 
 double metres(std::int32_t ticks) {
   return static_cast<double>(ticks) / kTicks;
@@ -61,45 +51,12 @@ MapTile map_tile(const TileState& state) {
   return tile;
 }
 
-/// Codes a root and what is below it; `node` -1 is empty. False where `go_on` said so.
-template <class Sink, class GoOn>
-bool code_root(Sink& sink, TileState& state, const CubeContext& c,
-               const std::vector<TileNode>* nodes, std::int32_t node, const GoOn& go_on) {
-  if (!code_occupied(sink, c, 0, node >= 0)) {
-    state.set_empty(c.cube);
-    return true;
-  }
-  return TreeCoder<Sink, GoOn>(sink, state, nodes, go_on).code(c, node);
-}
-
 }  // namespace
 
-Result<std::vector<std::byte>> encode_surface_tile(std::vector<MapSample> samples,
+Result<std::vector<std::byte>> encode_surface_tile(const std::vector<MapSample>& samples,
                                                    const SurfaceSettings& settings, double side_m) {
-  CURLIDAR_TRY(validate(settings, side_m));
-  TileLayout layout = layout_of(settings, side_m);
-  CURLIDAR_TRY_ASSIGN(sorted, sort_samples(samples, layout));
-  ByteWriter out;
-  write_header(out, layout);
-  const TileWeighing weighing = weighing_of(settings);
-  TileState state(layout);
-  TileModels models;
-  RangeEncoder encoder;
-  TileSink<RangeEncoder> sink(encoder, models);
-  std::size_t next = 0;
-  for_each_root(layout, [&](const TileCube& cube) {
-    const CubeContext c = state.context(cube);
-    TileSearch search(state, models, weighing, sorted.samples);
-    std::int32_t node = -1;
-    if (next < sorted.roots.size() && sorted.roots[next].cube.at == cube.at) {
-      const TileState::Mark mark = state.mark();
-      node = search.root(c, sorted.roots[next++]);
-      state.forget(cube, mark);
-    }
-    return code_root(sink, state, c, &search.nodes(), node, [] { return true; });
-  });
-  out.write_bytes(std::move(encoder).finish());
-  return std::move(out).bytes();
+  CURLIDAR_TRY_ASSIGN(tile, encode_tile(samples, settings, side_m));
+  return std::move(tile.bytes);
 }
 
 Result<MapTile> decode_surface_tile(ByteSpan bytes, const TileLimits& limits,

@@ -21,7 +21,7 @@ Status validate(const SurfaceSettings& settings, double side_m);
 /// The samples of a tile of `side_m` as bytes; none may be empty. Samples lie in [0, side_m) of x
 /// and y, at any height; those which do not, or are not finite, are invalid_argument. The bytes
 /// depend on the samples but not on their order. One thread; some microseconds a sample.
-Result<std::vector<std::byte>> encode_surface_tile(std::vector<MapSample> samples,
+Result<std::vector<std::byte>> encode_surface_tile(const std::vector<MapSample>& samples,
                                                    const SurfaceSettings& settings, double side_m);
 
 /// The leaves of a tile, `key` and `origin` left alone. With `max_level`, leaves below that level

@@ -16,7 +16,7 @@ inline constexpr std::int32_t kMaxCurve = 1 << 20;
 inline constexpr std::int32_t kMaxHeight = 1 << 30;
 inline constexpr std::uint32_t kMaxLevels = 5;  ///< below the roots
 /// What each doubling of a leaf multiplies its step by, in 1/16, unless the header says otherwise.
-inline constexpr std::uint32_t kStepFall = 12;
+inline constexpr std::uint32_t kStepFall = 9;
 /// A cell is told about only where its plane comes as near as this to the cube, ticks.
 inline constexpr std::int32_t kCellSlack = 256;
 

@@ -106,4 +106,17 @@ Result<SortedSamples> sort_samples(const std::vector<MapSample>& samples, TileLa
   return out;
 }
 
+void limit_weights(SortedSamples& sorted, double most) {
+  TileSamples& samples = sorted.samples;
+  for (const RootSamples& root : sorted.roots) {
+    for (std::size_t begin = root.begin, end = begin; begin < root.end; begin = end) {
+      double sum = 0;
+      while (end < root.end && samples.fine[end] == samples.fine[begin])
+        sum += samples.weight[end++];
+      if (sum <= most) continue;
+      for (std::size_t i = begin; i < end; ++i) samples.weight[i] *= most / sum;
+    }
+  }
+}
+
 }  // namespace curlidar::tile

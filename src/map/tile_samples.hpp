@@ -37,6 +37,9 @@ struct SortedSamples {
 /// limit_exceeded: more rows of roots than a tile may have.
 Result<SortedSamples> sort_samples(const std::vector<MapSample>& samples, TileLayout& layout);
 
+/// Scales the weights of every finest cube whose samples weigh more than `most`.
+void limit_weights(SortedSamples& sorted, double most);
+
 /// Most rows of roots that a tile may have.
 inline constexpr std::uint32_t kMaxRows = 4096;
 inline constexpr std::int32_t kMaxRow = 1 << 15;

@@ -32,6 +32,8 @@ Status validate(const SurfaceSettings& settings, double side_m) {
   CURLIDAR_TRY(within("step_m", settings.step_m, 0.001, 2));
   CURLIDAR_TRY(within("metres_per_bit", settings.metres_per_bit, 0, 1000));
   CURLIDAR_TRY(within("drop_m", settings.drop_m, 0.001, 10));
+  CURLIDAR_TRY(within("bare_samples", settings.bare_samples, 0, 1e6));
+  CURLIDAR_TRY(within("full_weight", settings.full_weight, 1, 1e6));
   if (settings.intensity) {
     CURLIDAR_TRY(within("intensity_step", settings.intensity_step, 1e-6, 1e6));
   }

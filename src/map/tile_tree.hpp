@@ -68,6 +68,17 @@ class TreeCoder {
   const GoOn& go_on_;
 };
 
+/// Codes a root and what is below it; `node` -1 is empty. False where `go_on` said so.
+template <class Sink, class GoOn>
+bool code_root(Sink& sink, TileState& state, const CubeContext& c,
+               const std::vector<TileNode>* nodes, std::int32_t node, const GoOn& go_on) {
+  if (!code_occupied(sink, c, 0, node >= 0)) {
+    state.set_empty(c.cube);
+    return true;
+  }
+  return TreeCoder<Sink, GoOn>(sink, state, nodes, go_on).code(c, node);
+}
+
 /// All roots in their order: calls body(cube) until it says false.
 template <class Body>
 bool for_each_root(const TileLayout& layout, const Body& body) {
