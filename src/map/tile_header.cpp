@@ -78,7 +78,7 @@ Result<TileLayout> read_header(ByteReader& in) {
     return damaged("its lowest row", static_cast<std::int64_t>(row));
   const auto half = static_cast<std::int32_t>((row + 1) / 2);
   layout.first_row = row % 2 != 0 ? -half : half;
-  if (rows > kMaxRows) return damaged("its rows", static_cast<std::int64_t>(rows));
+  if (rows > kMaxRoots / (side * side)) return damaged("its rows", static_cast<std::int64_t>(rows));
   layout.rows = static_cast<std::uint32_t>(rows);
   if (layout.intensity && !(layout.intensity_step > 0 && std::isfinite(layout.intensity_step))) {
     return Error{ErrorCode::corrupt, "the header of a tile has no step of intensity"};

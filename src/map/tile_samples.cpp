@@ -68,11 +68,10 @@ Result<SortedSamples> sort_samples(const std::vector<MapSample>& samples, TileLa
   SortedSamples out;
   layout.first_row = placed.empty() ? 0 : lowest;
   layout.rows = placed.empty() ? 0 : static_cast<std::uint32_t>(highest - lowest + 1);
-  if (layout.rows > kMaxRows) {
+  if (layout.rows > kMaxRoots / (layout.side_roots * layout.side_roots)) {
     return Error{ErrorCode::limit_exceeded,
-                 fmt::format("the samples of a tile are {} m high; at most {} m are possible",
-                             layout.rows * static_cast<std::uint32_t>(layout.edge(0) / kTicks),
-                             kMaxRows * static_cast<std::uint32_t>(layout.edge(0) / kTicks))};
+                 fmt::format("the samples of a tile are {} roots high; at most {} are possible",
+                             layout.rows, kMaxRoots / (layout.side_roots * layout.side_roots))};
   }
   const std::uint32_t log2 = layout.root_log2, fine_log2 = layout.fine_log2();
   const std::uint32_t mask = layout.fine(0) - 1;

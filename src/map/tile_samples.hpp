@@ -40,8 +40,8 @@ Result<SortedSamples> sort_samples(const std::vector<MapSample>& samples, TileLa
 /// Scales the weights of every finest cube whose samples weigh more than `most`.
 void limit_weights(SortedSamples& sorted, double most);
 
-/// Most rows of roots that a tile may have.
-inline constexpr std::uint32_t kMaxRows = 4096;
+/// Most roots that a tile may have.
+inline constexpr std::uint32_t kMaxRoots = 1 << 16;
 inline constexpr std::int32_t kMaxRow = 1 << 15;
 
 }  // namespace curlidar::tile

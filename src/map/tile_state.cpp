@@ -98,7 +98,7 @@ bool TileState::any_in(const TileCube& cube, int dx, int dy, int dz) const {
   return false;
 }
 
-void TileState::gather_planes(CubeContext& c) const {
+void TileState::gather_planes(CubeContext& c, bool touching_any) const {
   const auto f = static_cast<std::int32_t>(layout_.fine(c.cube.level));
   const std::int32_t x0 = static_cast<std::int32_t>(c.cube.at[0]) * f;
   const std::int32_t y0 = static_cast<std::int32_t>(c.cube.at[1]) * f;
@@ -121,7 +121,7 @@ void TileState::gather_planes(CubeContext& c) const {
     }
     ++votes[last_vote].votes;
   };
-  for (std::int32_t x = -1; x <= f; ++x) {
+  for (std::int32_t x = -1; touching_any && x <= f; ++x) {
     for (std::int32_t y = -1; y <= f; ++y) {
       const bool side = x < 0 || x == f || y < 0 || y == f;
       for (std::int32_t z = -1; z <= f; z += side ? 1 : f + 1) ask(x0 + x, y0 + y, z0 + z);
@@ -153,19 +153,36 @@ void TileState::gather_planes(CubeContext& c) const {
   c.finer = smaller == 0 ? 0 : 2 * smaller < touching ? 1 : 2;
 }
 
+bool TileState::alone(const TileCube& root) const {
+  const auto edge = static_cast<std::int64_t>(layout_.side_roots);
+  for (std::int64_t dx = -1; dx <= 1; ++dx) {
+    for (std::int64_t dy = -1; dy <= 1; ++dy) {
+      for (std::int64_t dz = -1; dz <= 1; ++dz) {
+        const std::int64_t x = root.at[0] + dx, y = root.at[1] + dy, z = root.at[2] + dz;
+        if (x < 0 || y < 0 || z < 0 || x >= edge || y >= edge || z >= layout_.rows) continue;
+        if (block_of_[static_cast<std::size_t>((x * edge + y) * layout_.rows + z)] >= 0)
+          return false;
+      }
+    }
+  }
+  return true;
+}
+
 CubeContext TileState::context(const TileCube& cube) const {
   CubeContext c;
   c.cube = cube;
   c.centre = centre_of(layout_, cube);
   c.half = layout_.edge(cube.level) / 2;
-  gather_planes(c);
+  const bool empty_around = cube.level == 0 && alone(cube);
+  gather_planes(c, !empty_around);
+  if (!leaves_.empty()) c.intensity = leaves_.back().intensity;
+  if (empty_around) return c;
   constexpr std::array<std::array<int, 3>, 6> kBeside = {
       {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}, {-1, 0, 1}, {0, -1, 1}, {-1, -1, 0}}};
   for (std::uint32_t k = 0; k < kBeside.size(); ++k) {
     const auto& [dx, dy, dz] = kBeside[k];
     c.around |= any_in(cube, dx, dy, dz) ? 1u << k : 0;
   }
-  if (!leaves_.empty()) c.intensity = leaves_.back().intensity;
   return c;
 }
 

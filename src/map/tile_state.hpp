@@ -99,7 +99,9 @@ class TileState {
   void fill(const TileCube& cube, std::int32_t value);
   std::uint32_t crossing_of(const CubeContext& c, const TilePlane& plane) const;
   bool any_in(const TileCube& cube, int dx, int dy, int dz) const;
-  void gather_planes(CubeContext& c) const;
+  /// Whether neither a root nor those around it hold anything: what is known at once.
+  bool alone(const TileCube& root) const;
+  void gather_planes(CubeContext& c, bool touching_any) const;
   std::uint8_t cell_at(std::uint32_t axis, const Ticks3& p) const;
 
   TileLayout layout_;

@@ -19,6 +19,7 @@
 #include "hostile/targets/records.hpp"
 #include "hostile/targets/residual.hpp"
 #include "hostile/targets/scan.hpp"
+#include "hostile/targets/surface.hpp"
 
 namespace curlidar {
 namespace {
@@ -40,7 +41,8 @@ constexpr Target kTargets[] = {{"container", test::container_target},
                                {"records", test::records_target},
                                {"loose", test::loose_target},
                                {"corrections", test::corrections_target},
-                               {"directions", test::directions_target}};
+                               {"directions", test::directions_target},
+                               {"surface", test::surface_target}};
 
 std::vector<std::byte> bytes_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
