@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "entropy/model.hpp"
@@ -98,14 +97,8 @@ struct TileModels {
   std::vector<BitModel> models;
   std::vector<MixWeights<kTileInputs>> weights;
 
-  /// As every tile starts: the tables surface and surface_mix of docs/format/priors.
-  TileModels();
-  /// Without any knowledge, for training.
-  static TileModels blank();
-
- private:
-  TileModels(std::vector<BitModel> m, std::vector<MixWeights<kTileInputs>> w)
-      : models(std::move(m)), weights(std::move(w)) {}
+  /// As every tile starts: without any knowledge.
+  TileModels() : models(kTileModels), weights(kTileMixers) {}
 };
 
 inline constexpr std::int32_t kTileMixRate = 10;
