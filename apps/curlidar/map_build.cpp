@@ -29,7 +29,7 @@ struct BuildOptions {
   std::string map, kind = "surface", quality = "small", sensor = "auto";
   MapHeader header;
   std::vector<double> origin;
-  double error_m = 0.05;
+  double error_m = 0.1;
   std::uint32_t columns = 1024, effort = CompactSettings{}.effort;
   CLI::Option *step = nullptr, *metres_per_bit = nullptr, *footprint = nullptr, *tile = nullptr;
 };

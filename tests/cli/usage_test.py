@@ -9,7 +9,7 @@ import unittest
 from support import CURLIDAR, FILE, INPUT, USAGE, CommandTest
 
 COMMANDS = ["encode", "decode", "mesh", "upsample", "convert", "info", "project", "compare",
-            "verify", "simulate", "render", "sensors", "calibrate", "demo"]
+            "verify", "simulate", "render", "sensors", "calibrate", "demo", "map"]
 
 
 class UsageTest(CommandTest):

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Maps: built, made longer, asked for points; what a killed build leaves."""
+
+import os
+import signal
+import subprocess
+import time
+import unittest
+
+from support import CURLIDAR, FILE, INPUT, USAGE, CommandTest
+
+
+class MapTest(CommandTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        (cls.folder / "scans").mkdir()
+        cls.simulate("scans/0.pcd")
+        cls.simulate("scans/1.pcd", "--seed", "1", "--noise", "0.01")
+        cls.write_poses("poses.txt", [0, 0])
+        result = cls.execute("map", "build", "scans", "--poses", "poses.txt", "-o", "street.curl")
+        assert result.returncode == 0, result.stderr.decode()
+
+    @classmethod
+    def write_poses(cls, name, places):
+        text = "".join(f"1 0 0 {x} 0 1 0 0 0 0 1 0\n" for x in places)
+        (cls.folder / name).write_text(text)
+
+    def test_info_tells_where_the_bytes_go(self):
+        info = self.run_json("map", "info", "street.curl", "--tiles")
+        self.assertEqual(info["bytes"], self.path("street.curl").stat().st_size)
+        self.assertEqual(info["bytes"],
+                         info["bytes_parts"] + info["bytes_index"] + info["bytes_other"])
+        self.assertEqual(len(info["tile_list"]), info["tiles"])
+        self.assertEqual(sum(tile["leaves"] for tile in info["tile_list"]), info["leaves"])
+        self.assertEqual(info["scans"], 2)
+        self.assertIn("surface", self.run_ok("map", "info", "street.curl").decode())
+
+    def test_extract_gives_the_part_that_is_asked_for(self):
+        whole = self.run_json("map", "extract", "street.curl", "-o", "all.ply")["points"]
+        part = self.run_json("map", "extract", "street.curl", "--box", "0,-5,-5,10,5,5", "-o",
+                             "part.csv")["points"]
+        self.assertGreater(whole, part)
+        self.assertGreater(part, 0)
+        rows = self.path("part.csv").read_text().splitlines()
+        numbers = [[float(v) for v in row.split(",")[:3]] for row in rows[-part:]]
+        self.assertEqual(len(numbers), part)
+        self.assertTrue(all(0 <= x <= 10 and -5 <= y <= 5 for x, y, _ in numbers))
+        near = self.run_json("map", "extract", "street.curl", "--radius", "0,0,0,8", "--density",
+                             "25", "--normals", "-o", "near.ply")["points"]
+        self.assertGreater(near, 0)
+        self.assertIn(b"normal_z", self.path("near.ply").read_bytes()[:1000])
+
+    def test_a_second_lap_costs_little_and_new_places_are_added(self):
+        before = self.path("street.curl").stat().st_size
+        again = self.run_json("map", "append", "street.curl", "scans", "--poses", "poses.txt",
+                              "-o", "again.curl")
+        self.assertLessEqual(again["bytes"], 1.1 * before)
+        self.write_poses("far.txt", [500, 500])
+        longer = self.run_json("map", "append", "street.curl", "scans", "--poses", "far.txt",
+                               "-o", "longer.curl")
+        self.assertGreater(longer["bytes"], 1.5 * before)
+        self.assertEqual(longer["parts_kept"], self.run_json("map", "info", "street.curl")["tiles"])
+
+    def test_keyframes_become_one_cloud(self):
+        built = self.run_json("map", "build", "scans/0.pcd", "scans/1.pcd", "--poses", "poses.txt",
+                              "--kind", "scans", "--columns", "512", "-o", "keys.curl")
+        self.assertEqual(built["parts"], 2)
+        info = self.run_json("map", "info", "keys.curl")
+        plain = self.run_json("map", "extract", "keys.curl", "-o", "plain.ply")["points"]
+        self.assertEqual(plain, info["points"])
+        dense = self.run_json("map", "extract", "keys.curl", "--rows", "4", "-o", "dense.ply")
+        fewer = self.run_json("map", "extract", "keys.curl", "--rows", "4", "--dedupe", "0.5",
+                              "-o", "fewer.ply")
+        self.assertGreater(dense["points"], 2 * plain)
+        self.assertLess(fewer["points"], dense["points"])
+
+    def test_what_does_not_fit_is_refused(self):
+        self.write_poses("three.txt", [0, 1, 2])
+        self.run_fail(INPUT, "map", "build", "scans", "--poses", "three.txt", "-o", "x.curl",
+                      says=["3 poses", "2 scans"])
+        self.run_fail(USAGE, "map", "build", "scans", "--poses", "poses.txt", "-o", "x.curl",
+                      "--every", "0", says="--every")
+        self.run_fail(FILE, "map", "info", "none.curl", says="none.curl")
+        self.run_fail(FILE, "map", "build", "scans", "--poses", "poses.txt", "-o", "no/x.curl")
+        self.run_fail(USAGE, "map", "extract", "street.curl", "--rows", "8", "-o", "x.ply",
+                      says="surface map")
+        self.run_fail(USAGE, "map", "extract", "street.curl", "--box", "1,2", "-o", "x.ply",
+                      says="--box")
+        self.assertNotIn("x.curl", self.files())
+
+    def test_a_cut_map_is_refused_or_read_in_part(self):
+        data = self.path("street.curl").read_bytes()
+        self.path("cut.curl").write_bytes(data[:len(data) * 2 // 3])
+        self.run_fail(INPUT, "map", "info", "cut.curl", says="cut off")
+        result = self.execute("map", "info", "cut.curl", "--allow-truncated", "--json")
+        self.assertEqual(result.returncode, 0)
+        self.assertIn(b"walking", result.stderr)
+
+    def test_a_build_that_is_ended_leaves_nothing_or_the_old_file(self):
+        folder = self.folder / "killed"
+        folder.mkdir()
+        old = self.path("street.curl").read_bytes()
+        for number in (signal.SIGTERM, signal.SIGKILL):
+            for wait_s in (0.02, 0.2):
+                target = folder / f"{int(number)}-{int(wait_s * 1000)}.curl"
+                target.write_bytes(old)
+                many = ["scans"] * 20
+                self.write_poses("many.txt", [float(i) for i in range(40)])
+                with subprocess.Popen([CURLIDAR, "map", "append", str(target), *many, "--poses",
+                                       "many.txt", "--quiet"], cwd=self.folder) as process:
+                    time.sleep(wait_s)
+                    process.send_signal(number)
+                    ended = process.wait()
+                if ended != 0:
+                    self.assertEqual(target.read_bytes(), old)
+                self.run_ok("map", "info", target)
+        hidden = [name for name in os.listdir(folder) if name.startswith(".")]
+        self.assertLessEqual(len(hidden), 2)  # of SIGKILL, which nobody can handle
+
+
+if __name__ == "__main__":
+    unittest.main()
