@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Predicted scans: what the scan before makes expect, and a field and a mask that are told by it."""
 from container import Corrupt, Reader, Unsupported, crc32c
-from entropy import RangeDecoder, decide_mixed, prior_models, prior_weights, words
+from entropy import RangeDecoder, decide_mixed, prior_models, prior_weights
 from field import KINDS, Block, Field
-from header import RowTable
-from integers import ONE_TURN, clip, divide, isqrt, mulshift, signed_angle, sin_cos
+from integers import ONE_TURN, clip, divide, isqrt, mulshift, sin_cos
 from mask import MaskDecoder
 from rays import Rays, _turned
 from scan import PARAMETERS, RAYS, SENSOR, Parameters, Scan
-from surface import RayWindow, Surface, Window, range_of, step_40, with_functions
+from surface import RayWindow, Surface, Window, range_of, with_functions
 
 PREDICTION = 0x17
 LEVELS = 8
