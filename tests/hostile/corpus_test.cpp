@@ -13,6 +13,7 @@
 #include "hostile/targets/decode.hpp"
 #include "hostile/targets/density.hpp"
 #include "hostile/targets/field.hpp"
+#include "hostile/targets/map.hpp"
 #include "hostile/targets/mask.hpp"
 #include "hostile/targets/points.hpp"
 #include "hostile/targets/rays.hpp"
@@ -30,6 +31,7 @@ struct Target {
 };
 
 constexpr Target kTargets[] = {{"container", test::container_target},
+                               {"map", test::map_target},
                                {"mask", test::mask_target},
                                {"field", test::field_target},
                                {"residual", test::residual_target},
