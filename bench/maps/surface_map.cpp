@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::map<std::string, double> options = {
-      {"step", 0.1},       {"bit", 0.2},       {"bare", 60}, {"full", 25},  {"drop", 0.3},
+      {"step", 0.1},       {"bit", 0.15},       {"bare", 60}, {"full", 25},  {"drop", 0.3},
       {"footprint", 0.25}, {"leaf", 0.25},     {"root", 4},  {"curves", 0}, {"intensity", 0},
       {"every", 1},        {"min", 2.5},       {"max", 80},  {"tile", 32},  {"voxel", 0.05},
       {"spacing", 0.05},   {"queries", 60000}, {"first", 0}};

@@ -23,7 +23,7 @@ struct SurfaceSettings {
   /// a metre; larger leaves are rounded finer.
   double step_m = 0.1;
   /// A bit is spent where it brings samples of weight 1 nearer to the map by this much in all.
-  double metres_per_bit = 0.2;
+  double metres_per_bit = 0.15;
   double root_m = 4;              ///< edge of the octree's largest cubes
   double smallest_leaf_m = 0.25;  ///< edge of its smallest
   double footprint_m = 0.25;      ///< edge of the cells that tell where surface was seen
