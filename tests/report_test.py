@@ -337,12 +337,12 @@ class WordsTest(unittest.TestCase):
     def test_the_command_finds_and_starts_the_report(self):
         with tempfile.TemporaryDirectory() as name:
             done = subprocess.run(
-                [COMMAND, "report", "--simulated", "--sections", "maps", "--check", "-o",
+                [COMMAND, "report", "--quick", "--simulated", "--sections", "maps", "--check", "-o",
                  f"{name}/r"], capture_output=True, text=True, check=False,
                 env={**os.environ, "CURLIDAR_REPORT_DIR": str(REPORT.parent)})
             self.assertEqual(done.returncode, 0, done.stderr)
             text = (Path(name) / "r/report.md").read_text(encoding="utf-8")
-            self.assertIn("`curlidar report --simulated --sections maps`", text)
+            self.assertIn("`curlidar report --quick --simulated --sections maps`", text)
 
     def test_no_such_section(self):
         self.assertIn("'none'", self.fails("--sections", "none"))

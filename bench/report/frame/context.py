@@ -19,9 +19,19 @@ OUTPUT = object()  # stands in a command of made() for the file that it makes
 
 @dataclass(frozen=True)
 class Made:
-    """A file that a command makes when it is first needed. Its name tells what made it."""
+    """A file, or a folder, that a command makes when it is first needed. Its name tells what made
+    it."""
     path: Path
     command: tuple
+
+
+@dataclass(frozen=True)
+class Inside:
+    """Files of a folder that is made: all that match a pattern, in the order of their names. As
+    part of a command one argument each. `span`: which of them, as a slice."""
+    folder: Made
+    pattern: str
+    span: tuple = (None, None)
 
 
 class Stopped(BaseException):
@@ -82,10 +92,11 @@ class Context:
         with self._lock:
             making = self._making.setdefault(made.path, threading.Lock())
         with making:  # sections that need it at once make it once
-            if not made.path.is_file():
+            if not made.path.exists():
                 self.scratch.mkdir(parents=True, exist_ok=True)
                 part = made.path.with_name("part-" + made.path.name)  # keeps the ending
-                self._run([part if each is OUTPUT else self._ready(each) for each in made.command])
+                self._run([word for each in made.command for word in
+                           ([part] if each is OUTPUT else self._ready(each))])
                 part.replace(made.path)
         return made.path
 
@@ -141,17 +152,30 @@ class Context:
     def _lines(self, command):
         """The objects that a command prints, or [{"failure": why}]."""
         try:
-            found = run.objects_in(self._run([self._ready(part) for part in command]))
+            found = run.objects_in(self._run([word for part in command
+                                              for word in self._ready(part)]))
             return found or [{"failure": "nothing was printed"}]
         except run.CommandFailed as error:
             if self.stopping:
                 raise Stopped from error
             return [{"failure": str(error)}]
 
+    def files_inside(self, inside):
+        """Paths of the files, which are there; raises run.CommandFailed if there are none."""
+        found = sorted(self.make(inside.folder).glob(inside.pattern))[slice(*inside.span)]
+        if not found:
+            raise run.CommandFailed(f"no file {inside.pattern} was made")
+        return found
+
     def _ready(self, part):
-        return self.make(part) if isinstance(part, Made) else part
+        """The words that stand for a part of a command, whose files are there."""
+        if isinstance(part, Inside):
+            return self.files_inside(part)
+        return [self.make(part) if isinstance(part, Made) else part]
 
     def _plain(self, part):
+        if isinstance(part, Inside):
+            return Path(part.pattern)
         return part.path if isinstance(part, Made) else part
 
     def _digest(self, first, command):
@@ -159,6 +183,8 @@ class Context:
         for part in command:
             if isinstance(part, Made):
                 parts.append(part.path.name)
+            elif isinstance(part, Inside):
+                parts.append(f"{part.folder.path.name}/{part.pattern} {part.span}")
             elif isinstance(part, Path):
                 parts.append(self._digest_of_file(part) if part.is_file() else part.name)
             else:
