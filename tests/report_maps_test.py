@@ -28,7 +28,7 @@ def answer(key):
         size = SINGLE if key["way"] == "one by one" else PREDICTED
         scans = [{"points_in": 10000, "bytes": size if i else SINGLE, "mean_error_m": .049}
                  for i in range(4)]
-        return [{"said": scans if key["way"] == "one by one" else [{"scans": scans}],
+        return [{"said": scans if key["way"] == "one by one" else [{"scans": len(scans), "frames": scans}],
                  "cpu_s": 2., "peak_rss_bytes": 1e8,
                  "files": {"f": sum(each["bytes"] for each in scans)}}]
     if "poses of" in key:

@@ -67,7 +67,7 @@ def reports(told):
     """The report of each scan, in the order of the scans."""
     found = []
     for each in told["said"]:
-        found += each["scans"] if "scans" in each else [each]
+        found += each["frames"] if "frames" in each else [each]
     return [each for each in found if "points_in" in each]
 
 
