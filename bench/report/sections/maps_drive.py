@@ -8,7 +8,7 @@ from sections.maps_inputs import (appended, at, built, compared, extracted, told
 from sections.maps_surface import SPACING_M, shown
 
 SENSOR, QUICK_SENSOR = "hdl64e-kitti", "vlp16"
-SCANS, QUICK_SCANS = 480, 8  # of two laps
+SCANS, QUICK_SCANS = 240, 8  # of two laps
 LAPS = 2
 PARTS = (.25, .5, 1, 2)      # laps whose builds are measured
 FAR_M = .3                   # map farther than this from the truth is a ghost
@@ -21,7 +21,7 @@ def drive_of(context):
     if not context.scenes:
         return None
     return maps_inputs.simulated(
-        context, "two laps", "--laps", str(LAPS), "--sensor",
+        context, "two laps", "--laps", str(LAPS), "--truth", "--sensor",
         QUICK_SENSOR if context.quick else SENSOR,
         count=QUICK_SCANS if context.quick else SCANS)
 
@@ -33,14 +33,14 @@ def ways(context, drive):
     one = built(context, first)
     return (("lap one", one, first), ("lap two appended", appended(context, one, second), drive),
             ("both laps at once", built(context, drive), drive),
-            ("both, moving things left out", built(context, drive, "--filter-dynamic"), drive))
+            ("both, moving things left out", built(context, drive, "--still"), drive))
 
 
 def row_of(context, drive, name, folder, seen):
     told = told_by(context, "maps", {"drive": drive.name, "built": name}, folder)
     if "failure" in told:
         return {"map": name, "failure": told["failure"]}
-    truth = Inside(drive.scans[0].folder, "truth.*")
+    truth = Inside(drive.scans[0].folder, "truth.ply")
     line = compared(context, {"drive": drive.name, "distances": name}, truth,
                     extracted(context, folder, "--spacing", f"{SPACING_M:g}"))
     if "failure" in line:

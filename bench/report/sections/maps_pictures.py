@@ -32,11 +32,9 @@ def pictures_of(context):
                 pictures.drawn(context, cloud, *view, "--colour", "error", "--reference", whole,
                                "--max-value", f"{ERROR_SCALE_M:g}", "--title", "its error",
                                width=WIDTH)])
-        pose = context.made(".txt", [maps_inputs.PYTHON, maps_inputs.POSES, "slice", drive.poses,
-                                     "7", "8", OUTPUT])
         seen = context.made(".pcd", [
-            context.curlidar, "map", "sample", map_of(folder), "--sensor", SENSOR, "--pose", pose,
-            "--threads", "1", "--quiet", "-o", OUTPUT])
+            context.curlidar, "map", "sample", map_of(folder), "--sensor", SENSOR, "--poses",
+            drive.poses, "--index", "7", "--threads", "1", "--quiet", "-o", OUTPUT])
         yield ("maps-virtual", "A virtual scan of the map beside the real one",
                "Scan 7 as it was measured, and what the sensor would see in the map from there.",
                [pictures.drawn(context, drive.scans[7], "--distance", "45", "--title", "real",
@@ -48,7 +46,7 @@ def pictures_of(context):
         yield ("maps-drive-above", "The map of the simulated drive",
                "Both laps, rendered from the file; and the exact surface beside it.",
                [map_picture(context, folder),
-                pictures.drawn(context, Inside(drive.scans[0].folder, "truth.*"), "--view",
+                pictures.drawn(context, Inside(drive.scans[0].folder, "truth.ply"), "--view",
                                "birds-eye", "--title", "truth", width=WIDTH)])
 
 
