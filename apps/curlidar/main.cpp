@@ -22,6 +22,8 @@ constexpr const char* kFooter = R"(Try it:
   curlidar decode scan.curl --rows 8 -o dense.ply
   curlidar verify scan.curl scan.pcd       proves that the file keeps what it promises
   curlidar compare scan.pcd scan.curl      how far apart they are, both ways
+  curlidar map build scans/ --poses poses.txt -o street.curl
+                                           the surface that many scans have seen, in one file
 
 '-' reads standard input or writes standard output. 'curlidar COMMAND --help' says more.
 Exit codes: 0 done, 1 internal failure (out of memory), 2 wrong usage, 3 an input is damaged,

@@ -19,16 +19,22 @@ COMMANDS = {
 
 
 def measured(context):
-    """Rows of each table; what is stored is not measured again."""
-    return {"sequences": maps_sequences.rows(context), "surface": maps_surface.rows(context),
-            "keyframes": maps_keyframes.rows(context), "drive": maps_drive.rows(context),
-            "memory": maps_drive.memory_rows(context)}
+    """Rows of each table; what is stored is not measured again, what the command does not know is
+    left out."""
+    sequences = "--sequence" in context.help_of("encode")
+    maps = "build" in context.help_of("map")
+    return {"sequences": maps_sequences.rows(context) if sequences else [],
+            "surface": maps_surface.rows(context) if maps else [],
+            "keyframes": maps_keyframes.rows(context) if maps else [],
+            "drive": maps_drive.rows(context) if maps else [],
+            "memory": maps_drive.memory_rows(context) if maps else []}
 
 
 def measure(context):
     measured(context)
     from sections import maps_pictures  # needs numpy
-    maps_pictures.measure(context)
+    if "render" in context.help_of("map"):
+        maps_pictures.measure(context)
 
 
 def command_of(goal):
@@ -72,7 +78,7 @@ def tables(context):
 
 def figures(context):
     from sections import maps_pictures
-    return [*maps_drive.figures(context, maps_drive.memory_rows(context)),
+    return [*maps_drive.figures(context, measured(context)["memory"]),
             *maps_pictures.figures(context)]
 
 

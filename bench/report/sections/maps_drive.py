@@ -13,7 +13,7 @@ LAPS = 2
 PARTS = (.25, .5, 1, 2)      # laps whose builds are measured
 FAR_M = .3                   # map farther than this from the truth is a ghost
 MEMORY_GROWTH = 1.25         # that peaks may have from half a lap to two laps
-FIGURE = "maps-memory"
+FIGURE = "maps-length"
 
 
 def drive_of(context):
