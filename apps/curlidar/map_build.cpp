@@ -29,10 +29,48 @@ struct BuildOptions {
   std::string map, kind = "surface", quality = "small", sensor = "auto";
   MapHeader header;
   std::vector<double> origin;
-  double error_m = 0.1;
+  std::optional<double> error_m;
   std::uint32_t columns = 1024, effort = CompactSettings{}.effort;
+  CLI::App* app = nullptr;
   CLI::Option *step = nullptr, *metres_per_bit = nullptr, *footprint = nullptr, *tile = nullptr;
 };
+
+/// Options that would do nothing for a map of this kind are a mistake.
+void refuse_other_kind(const BuildOptions& options, MapKind kind) {
+  const bool surface = kind == MapKind::surface;
+  const std::vector<const char*> others =
+      surface
+          ? std::vector<const char*>{"--error", "--columns", "--effort", "--sensor"}
+          : std::vector<const char*>{"--quality", "--metres-per-bit", "--footprint", "--tile-side",
+                                     "--curves",  "--still",          "--memory"};
+  for (const char* name : others) {
+    const CLI::Option* option = options.app->get_option_no_throw(name);
+    if (option == nullptr || option->count() == 0) continue;
+    usage_error(fmt::format("{} is for {}, and this is a {}", name,
+                            surface ? "maps of scans" : "surface maps",
+                            surface ? "surface map" : "map of scans"));
+  }
+}
+
+/// How the keyframes of a map of scans are coded. A step by default, not an error: what a mean
+/// error costs depends on how well the sensor's rings are known, and it may be out of reach.
+constexpr double kScanStep_m = 0.3;
+EncodeSettings scan_settings(const BuildOptions& options) {
+  if (options.error_m && options.step->count() > 0) {
+    usage_error("--error and --step both say how exact the scans are: give one");
+  }
+  EncodeSettings scan;
+  scan.compact.coverage = Coverage::image;
+  scan.compact.columns = options.columns;
+  scan.compact.effort = options.effort;
+  scan.compact.target = options.error_m ? CompactTarget::error : CompactTarget::step;
+  const double step_m = options.step->count() > 0 ? options.header.surface.step_m : kScanStep_m;
+  scan.compact.target_value = options.error_m.value_or(step_m);
+  scan.sensor = parse_sensor(options.sensor);
+  scan.attributes = std::vector<std::string>{};
+  if (options.header.surface.intensity) scan.attributes->push_back("intensity");
+  return scan;
+}
 
 /// What a word for the quality stands for; options of their own go before.
 SurfaceSettings surface_of(const BuildOptions& options) {
@@ -65,13 +103,8 @@ int run_build(const BuildOptions& options) {
     settings.header.origin = {options.origin[0], options.origin[1], options.origin[2]};
     settings.origin_of_first_scan = false;
   }
-  settings.scan.compact.coverage = Coverage::image;
-  settings.scan.compact.columns = options.columns;
-  settings.scan.compact.effort = options.effort;
-  settings.scan.compact.target_value = options.error_m;
-  settings.scan.sensor = parse_sensor(options.sensor);
-  settings.scan.attributes = std::vector<std::string>{};
-  if (settings.header.surface.intensity) settings.scan.attributes->push_back("intensity");
+  refuse_other_kind(options, settings.header.kind);
+  settings.scan = scan_settings(options);
   settings.still = options.inputs.still;
   settings.threads = options.common.threads;
   apply(options.inputs, settings);
@@ -85,11 +118,11 @@ int run_append(const BuildOptions& options) {
   const std::string& output = options.inputs.output.empty() ? options.map : options.inputs.output;
   const auto map = std::make_shared<const MapFile>(load_map(options.map));
   MapBuildSettings settings;
-  settings.scan.compact.coverage = Coverage::image;
-  settings.scan.compact.columns = options.columns;
-  settings.scan.compact.effort = options.effort;
-  settings.scan.compact.target_value = options.error_m;
-  settings.scan.attributes = std::vector<std::string>{};
+  refuse_other_kind(options, map->header().kind);
+  if (map->header().kind == MapKind::surface && options.step->count() > 0) {
+    usage_error("--step is for maps of scans: a surface map keeps its own");
+  }
+  settings.scan = scan_settings(options);
   settings.still = options.inputs.still;
   settings.threads = options.common.threads;
   apply(options.inputs, settings);
@@ -103,8 +136,12 @@ int run_append(const BuildOptions& options) {
 }
 
 void add_scan_options(CLI::App& app, BuildOptions& options) {
-  app.add_option("--error", options.error_m, "Maps of scans: mean error of the returns, m")
-      ->capture_default_str()
+  options.app = &app;
+  options.step = app.add_option("--step", options.header.surface.step_m,
+                                "Rounding of planes, m; of maps of scans the quantiser's step, "
+                                "default 0.3");
+  app.add_option("--error", options.error_m,
+                 "Maps of scans: mean error of the returns instead of a step, m")
       ->check(number_in(0.001, 10));
   app.add_option("--columns", options.columns, "Maps of scans: columns of a turn")
       ->capture_default_str()
@@ -134,7 +171,6 @@ Command add_map_build(CLI::App& map) {
       ->capture_default_str();
   app->add_option("--max-range", header.max_range_m, "Farther returns are left out, m")
       ->capture_default_str();
-  options->step = app->add_option("--step", header.surface.step_m, "Rounding of planes, m");
   options->metres_per_bit = app->add_option("--metres-per-bit", header.surface.metres_per_bit,
                                             "What a bit must save: sum of distances, m");
   options->footprint = app->add_option("--footprint", header.surface.footprint_m,

@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <tuple>
@@ -76,18 +79,43 @@ class FirstInCube {
   explicit FirstInCube(std::optional<double> edge_m) : edge_m_(edge_m) {}
   bool operator()(const Vec3& p) {
     if (!edge_m_) return true;
-    std::uint64_t key = 0;
-    for (const double value : {p.x, p.y, p.z}) {
-      const auto number = static_cast<std::int64_t>(std::floor(value / *edge_m_));
-      key = key << 21 | (static_cast<std::uint64_t>(number) & 0x1fffff);
-    }
-    return seen_.insert(key).second;
+    return seen_.insert({number(p.x), number(p.y), number(p.z)}).second;
   }
 
  private:
+  using Numbers = std::array<std::int64_t, 3>;
+  struct Hash {
+    std::size_t operator()(const Numbers& numbers) const {
+      std::uint64_t hash = 0;
+      for (const std::int64_t n : numbers) {
+        hash = (hash ^ static_cast<std::uint64_t>(n)) * 0x9e3779b97f4a7c15u;
+        hash ^= hash >> 29;
+      }
+      return static_cast<std::size_t>(hash);
+    }
+  };
+  std::int64_t number(double value) const {
+    return static_cast<std::int64_t>(std::clamp(std::floor(value / *edge_m_), -9e18, 9e18));
+  }
+
   std::optional<double> edge_m_;
-  std::unordered_set<std::uint64_t> seen_;
+  std::unordered_set<Numbers, Hash> seen_;
 };
+
+/// The scans that reach into the part that is asked for.
+std::vector<std::size_t> needed_scans(const MapFile& map, const MapExtractSettings& settings) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  MapBox box = settings.box.value_or(MapBox{{-kFar, -kFar, -kFar}, {kFar, kFar, kFar}});
+  if (settings.centre) {
+    const Vec3& c = *settings.centre;
+    const double r = settings.radius_m;
+    box.low = {std::max(box.low.x, c.x - r), std::max(box.low.y, c.y - r),
+               std::max(box.low.z, c.z - r)};
+    box.high = {std::min(box.high.x, c.x + r), std::min(box.high.y, c.y + r),
+                std::min(box.high.z, c.z + r)};
+  }
+  return map.parts_in(box);
+}
 
 /// All keyframes, reconstructed and put where they were taken. Attributes are left behind.
 Cloud extract_scans(const ExtractOptions& options, const MapFile& map,
@@ -100,8 +128,10 @@ Cloud extract_scans(const ExtractOptions& options, const MapFile& map,
   FirstInCube first(options.dedupe);
   Cloud cloud;
   cloud.position_type = ScalarType::float64;
-  for (std::size_t i = 0; i < map.scans().size(); ++i) {
-    bar.update(i, map.scans().size(), "extract", 0);
+  std::size_t done = 0;
+  const std::vector<std::size_t> needed = needed_scans(map, settings);
+  for (const std::size_t i : needed) {
+    bar.update(done++, needed.size(), "extract", 0);
     const MapScan scan = need(map.read_scan(i));
     DecodeOptions decoding;
     decoding.threads = options.common.threads;

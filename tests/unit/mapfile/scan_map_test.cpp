@@ -11,6 +11,7 @@
 
 #include "curlidar/io.hpp"
 #include "curlidar/map.hpp"
+#include "format/indexed_file.hpp"
 #include "mapfile/map_header.hpp"
 #include "support/scans.hpp"
 
@@ -240,6 +241,50 @@ TEST_F(ScanMap, CutOffAnywhereItIsRefusedOrTellsWhatIsMissing) {
     }
   }
   EXPECT_GE(most, 2u);
+}
+
+TEST_F(ScanMap, TheGoldenFileIsReadAndWrittenAsEver) {
+  const std::string golden = std::string(CURLIDAR_TEST_FOLDER) + "/../../golden/";
+  struct Keyframe {
+    const char* file;
+    Vec3 place;
+    double cosine, sine;
+    std::optional<double> time_s;
+  };
+  const Keyframe keyframes[] = {{"street-16", {1000.5, -2000.25, 3.125}, 0, 1, 1.5},
+                                {"room-16-fast", {1010, -2001, 3}, 0.6, 0.8, {}}};
+  MapHeader header;
+  header.kind = MapKind::scans;
+  header.origin = {1000, -2000, 3};
+  header.scans = 2;
+  header.travelled_m = 9.5;
+  header.metadata = {{"place", "Stra\u00dfe"}};
+  IndexedWriter writer =
+      IndexedWriter::create(path("map.curl"), IndexedKind::scan_map, *write_map_header(header))
+          .value();
+  const MapFile map = MapFile::open(golden + "scan_maps/two-scans.curl").value();
+  ASSERT_EQ(map.scans().size(), 2u);
+  EXPECT_EQ(map.header().metadata, header.metadata);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Keyframe& frame = keyframes[k];
+    RigidMotion pose;
+    pose.rotation[0] = {frame.cosine, -frame.sine, 0};
+    pose.rotation[1] = {frame.sine, frame.cosine, 0};
+    pose.move = frame.place;
+    const std::vector<std::byte> file =
+        read_file(golden + "compact/" + frame.file + ".curl").value();
+    const ScanExtent extent = extent_of(decode(file)->points);
+    ASSERT_TRUE(writer.add(write_scan_part(pose, frame.time_s, file),
+                           write_scan_summary(pose, header, extent.radius_m, extent.points)));
+    const MapScan scan = map.read_scan(k).value();
+    EXPECT_EQ(scan.file, file);
+    EXPECT_EQ(scan.time_s, frame.time_s);
+    EXPECT_EQ(scan.T_map_sensor.move, frame.place);
+    EXPECT_LT(largest_difference(scan.T_map_sensor, pose), 5e-9);
+    EXPECT_EQ(map.scans()[k].points, extent.points);
+  }
+  ASSERT_TRUE(writer.finish());
+  EXPECT_EQ(*read_file(path("map.curl")), *read_file(golden + "scan_maps/two-scans.curl"));
 }
 
 }  // namespace
