@@ -23,6 +23,8 @@ class CompactOptions {
   void apply(CompactSettings& settings) const;
   /// The first of these options that was given; "" if none was.
   std::string first_given() const;
+  /// Whether parts were asked for that can be decoded alone.
+  bool asks_for_segments() const { return segments_ != "auto"; }
 
  private:
   struct Target {

@@ -10,47 +10,16 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
+#include "curlidar/sequence.hpp"
+
 namespace curlidar::app {
 namespace fs = std::filesystem;
 namespace {
-
-void make_directory(const std::string& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error) {
-    throw Failure(
-        {ErrorCode::io, fmt::format("{}: cannot make this directory: {}", path, error.message())},
-        kExitFile);
-  }
-}
 
 std::string normal(const std::string& path) {
   std::error_code error;
   const fs::path full = fs::weakly_canonical(path, error);
   return error ? path : full.string();
-}
-
-/// No output may be an input or another job's output.
-void check_jobs(const std::vector<Job>& jobs) {
-  std::map<std::string, const Job*> made;
-  for (const Job& job : jobs) {
-    if (job.output == "-") continue;
-    const auto [place, first] = made.emplace(normal(job.output), &job);
-    if (!first) {
-      usage_error(
-          fmt::format("{} and {} would both become {}: give them different names or "
-                      "run them apart",
-                      place->second->input, job.input, job.output));
-    }
-  }
-  for (const Job& job : jobs) {
-    if (job.input == "-") continue;
-    const auto place = made.find(normal(job.input));
-    if (place != made.end()) {
-      usage_error(fmt::format("the output {} would replace the input {}: give another one with -o",
-                              place->second->output, job.input));
-    }
-  }
 }
 
 struct Failed {
@@ -76,6 +45,38 @@ std::optional<Failed> run_job(const JobBody& body, const Job& job, const Progres
 }
 
 }  // namespace
+
+void make_directory(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) {
+    throw Failure(
+        {ErrorCode::io, fmt::format("{}: cannot make this directory: {}", path, error.message())},
+        kExitFile);
+  }
+}
+
+void check_jobs(const std::vector<Job>& jobs) {
+  std::map<std::string, const Job*> made;
+  for (const Job& job : jobs) {
+    if (job.output == "-") continue;
+    const auto [place, first] = made.emplace(normal(job.output), &job);
+    if (!first) {
+      usage_error(
+          fmt::format("{} and {} would both become {}: give them different names or "
+                      "run them apart",
+                      place->second->input, job.input, job.output));
+    }
+  }
+  for (const Job& job : jobs) {
+    if (job.input == "-") continue;
+    const auto place = made.find(normal(job.input));
+    if (place != made.end()) {
+      usage_error(fmt::format("the output {} would replace the input {}: give another one with -o",
+                              place->second->output, job.input));
+    }
+  }
+}
 
 bool is_directory(const std::string& path) {
   std::error_code error;
@@ -143,6 +144,7 @@ int for_each_job(const CommonOptions& common, const std::vector<Job>& jobs, cons
     const std::optional<Failed> failed = run_job(body, jobs[i], progress, outcome);
     bar.clear();
     Json report = {{"input", jobs[i].input}};
+    if (jobs[i].scan) report["scan"] = *jobs[i].scan;
     if (failed) {
       print_error(failed->message);
       if (code == kExitOk) code = failed->code;
@@ -150,6 +152,7 @@ int for_each_job(const CommonOptions& common, const std::vector<Job>& jobs, cons
     } else {
       if (!jobs[i].output.empty()) report["output"] = jobs[i].output;
       report.update(outcome.json);
+      if (code == kExitOk) code = outcome.code;
       if (!common.json) print_text(common, outcome.text, data_on_stdout);
     }
     reports.push_back(std::move(report));
@@ -160,13 +163,43 @@ int for_each_job(const CommonOptions& common, const std::vector<Job>& jobs, cons
   return code;
 }
 
-DecodedScan load_curl(const std::string& path, const DecodeOptions& options) {
+namespace {
+
+DecodedScan load_scan_of_sequence(const std::string& path, DecodeOptions options,
+                                  const std::optional<std::size_t>& scan) {
+  SequenceReadOptions reading;
+  reading.threads = options.threads;
+  SequenceFile sequence = need(SequenceFile::open(path, reading));
+  if (!scan) {
+    throw Failure({ErrorCode::unsupported,
+                   fmt::format("{} is a sequence of {} scans, and one is wanted: --scan K chooses "
+                               "it, or 'curlidar decode {} --scan K' makes a cloud of it",
+                               path, sequence.scans(), path)},
+                  kExitInput);
+  }
+  Result<DecodedScan> decoded = sequence.decode(*scan, options);
+  if (!decoded) {
+    throw Failure({decoded.error().code, fmt::format("{}: {}", path, decoded.error().message)},
+                  exit_code_of(decoded.error().code));
+  }
+  return *std::move(decoded);
+}
+
+}  // namespace
+
+DecodedScan load_curl(const std::string& path, const DecodeOptions& options,
+                      const std::optional<std::size_t>& scan) {
+  if (path != "-" && is_sequence_file(path)) return load_scan_of_sequence(path, options, scan);
   const std::vector<std::byte> bytes = need(read_file(path));
   return need(decode(bytes, options));
 }
 
 Cloud load_cloud(const std::string& path, const std::optional<CloudFormat>& format,
-                 const ReconstructSettings& reconstruct_settings) {
+                 const ReconstructSettings& reconstruct_settings,
+                 const std::optional<std::size_t>& scan) {
+  if (!format && path != "-" && is_sequence_file(path)) {
+    return need(reconstruct(load_scan_of_sequence(path, {}, scan), reconstruct_settings));
+  }
   const std::vector<std::byte> bytes = need(read_file(path));
   if (!format && is_curl(bytes)) {
     return need(reconstruct(need(decode(bytes)), reconstruct_settings));
@@ -174,6 +207,13 @@ Cloud load_cloud(const std::string& path, const std::optional<CloudFormat>& form
   ReadOptions options;
   options.format = format;
   return need(parse_cloud(bytes, path == "-" ? "standard input" : path, options));
+}
+
+void check_scan_choice(const std::optional<std::size_t>& scan,
+                       const std::vector<std::string>& paths) {
+  const auto is_one = [](const std::string& path) { return path != "-" && is_sequence_file(path); };
+  if (!scan || std::any_of(paths.begin(), paths.end(), is_one)) return;
+  usage_error(fmt::format("--scan chooses from a sequence, and {} is none", paths.front()));
 }
 
 void save_cloud(const std::string& path, const Cloud& cloud, WriteOptions options,

@@ -18,6 +18,7 @@ namespace curlidar::app {
 /// One input and the file made from it (empty for commands that make none).
 struct Job {
   std::string input, output;
+  std::optional<std::size_t> scan{};  ///< of an input that is a sequence
 };
 
 /// Names the output of every input. `output` is what -o said: empty = beside the input, a
@@ -28,6 +29,11 @@ std::vector<Job> plan_jobs(const std::vector<std::string>& inputs, const std::st
                            const std::string& suffix);
 /// Jobs of a command that makes no files.
 std::vector<Job> plan_jobs(const std::vector<std::string>& inputs);
+
+/// The same failures for jobs that were named otherwise.
+void check_jobs(const std::vector<Job>& jobs);
+/// Makes a folder and those above it; Failure(kExitFile).
+void make_directory(const std::string& path);
 
 /// Whether a name is that of a directory, existing or, by its last '/', to be made.
 bool is_directory(const std::string& path);
@@ -40,6 +46,7 @@ void refuse_same_file(const std::string& input, const std::string& output);
 struct Outcome {
   Json json;
   std::string text;
+  int code = 0;  ///< exit code that it means for the command
 };
 using JobBody = std::function<Outcome(const Job&, const ProgressCallback&)>;
 
@@ -48,11 +55,18 @@ using JobBody = std::function<Outcome(const Job&, const ProgressCallback&)>;
 /// Returns the exit code of the first failure.
 int for_each_job(const CommonOptions& common, const std::vector<Job>& jobs, const JobBody& body);
 
-/// A cloud file, or a .curl file decoded at rows x columns times its own lattice.
+/// A cloud file, or a .curl file decoded at rows x columns times its own lattice. Of a sequence the
+/// given scan; Failure without one. `scan` means nothing to other files.
 Cloud load_cloud(const std::string& path, const std::optional<CloudFormat>& format,
-                 const ReconstructSettings& reconstruct_settings = {});
-/// A .curl file.
-DecodedScan load_curl(const std::string& path, const DecodeOptions& options = {});
+                 const ReconstructSettings& reconstruct_settings = {},
+                 const std::optional<std::size_t>& scan = {});
+/// A .curl file; of a sequence the given scan.
+DecodedScan load_curl(const std::string& path, const DecodeOptions& options = {},
+                      const std::optional<std::size_t>& scan = {});
+/// Failure(kExitUsage) if a scan is chosen and none of the files is a sequence.
+void check_scan_choice(const std::optional<std::size_t>& scan,
+                       const std::vector<std::string>& paths);
+inline constexpr const char* kScanHelp = "Of a sequence: which scan, counted from 0";
 
 /// Writes a cloud; "-" without a format is PCD. `hint` is what to do when the format cannot hold
 /// it.

@@ -32,6 +32,7 @@ decode. docs/cli.md defines every figure.)";
 struct Options {
   CommonOptions common;
   std::string a, b, format, error_cloud;
+  std::optional<std::size_t> scan;
   MetricsSettings metrics;
   bool images = false;
   ImageSettings image_ranges;
@@ -196,8 +197,9 @@ int run(const Options& options) {
     usage_error("--max-range must be above --min-range");
   }
   const auto format = parse_format(options.format);
-  Cloud a = load_cloud(options.a, format);
-  const Cloud b = load_cloud(options.b, format);
+  check_scan_choice(options.scan, {options.a, options.b});
+  Cloud a = load_cloud(options.a, format, {}, options.scan);
+  const Cloud b = load_cloud(options.b, format, {}, options.scan);
   const Metrics metrics = need(measure(a, b, options.metrics, options.common.threads));
   std::optional<ImageMetrics> images;
   if (options.images)
@@ -266,6 +268,7 @@ Command add_compare(CLI::App& root) {
   app->add_option("--error-cloud", options->error_cloud,
                   "Write A with the distance of each point as attribute 'error', metres");
   add_metrics_options(*app, *options);
+  app->add_option("--scan", options->scan, kScanHelp)->type_name("K");
   add_common_options(*app, options->common);
   return {app, [options] { return run(*options); }};
 }

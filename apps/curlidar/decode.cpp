@@ -3,15 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "commands.hpp"
 #include "common_inputs.hpp"
+#include "decode_output.hpp"
 #include "decode_plan.hpp"
+#include "decode_sequence.hpp"
 
 namespace curlidar::app {
 namespace {
@@ -27,6 +26,8 @@ constexpr const char* kFooter = R"(Examples:
   curlidar decode vlp16.curl --preset sparse --confidence -o dense.pcd
   curlidar decode out/*.curl -o back/ --format bin --attributes intensity
   curlidar decode scan.curl --rings 16:48 --azimuth -45:45 -o ahead.pcd
+  curlidar decode drive.curl --scan 12 -o one.pcd  a scan of a sequence, counted from 0
+  curlidar decode drive.curl --scan 10:20 -o back/ scans 10 to 19; without --scan all of them
   curlidar decode cut.curl --allow-truncated       as far as the file goes
 The format follows the extension of -o, or --format. KITTI .bin and nuScenes files hold fixed
 attributes: choose them with --attributes. Depth images give the coded returns, one for one.)";
@@ -56,93 +57,22 @@ std::string missing_text(const std::string& input, const std::vector<std::string
   return text;
 }
 
-/// A result without a single point is right, but seldom what was meant.
-void warn_if_empty(const Job& job, const DecodedScan& scan, const DecodePlan& plan,
-                   std::size_t points) {
-  const bool in_part = plan.decoding().region.has_value();
-  if (points != 0 || (scan.coded_returns == 0 && !in_part)) return;
-  print_warning(
-      scan.coded_returns == 0
-          ? fmt::format("{} holds no return in this region: {} is empty", job.input, job.output)
-          : fmt::format("nothing of {} is believed where it was asked for: {} is empty", job.input,
-                        job.output));
-}
-
-/// KITTI's readers take every record for a point.
-void warn_of_empty_slots(const Job& job, const Cloud& cloud, const DecodePlan& plan,
-                         std::size_t points) {
-  const auto format =
-      plan.writing().format ? plan.writing().format : cloud_format_by_extension(job.output);
-  const bool fixed = format == CloudFormat::kitti || format == CloudFormat::nuscenes;
-  if (!fixed || !plan.keeps_empty() || points == cloud.size()) return;
-  print_warning(
-      fmt::format("{}: {} records are NaN, for which {} files have no agreed meaning; npy, "
-                  "pcd and ply keep it",
-                  job.output, count_text(cloud.size() - points), to_string(*format)));
-}
-
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-Json report_json(const DecodedScan& scan, const ReconstructSettings& settings, std::size_t points,
-                 double ms) {
-  return {{"profile", to_string(scan.profile)},
-          {"sensor", scan.sensor.name},
-          {"rows", settings.rows},
-          {"cols", settings.columns},
-          {"min_confidence", settings.min_confidence},
-          {"points_coded", scan.coded_returns},
-          {"points", points},
-          {"decode_ms", ms},
-          {"missing", scan.missing},
-          {"metadata", scan.metadata}};
-}
-
-Outcome write_mesh_of(const Job& job, const DecodedScan& scan, const DecodePlan& plan,
-                      Clock::time_point start, const ProgressCallback& progress) {
-  const ReconstructSettings settings = plan.settings(scan);
-  const SurfaceMesh mesh = need(reconstruct_mesh(scan, settings, progress));
-  const double ms = milliseconds_since(start);
-  warn_if_empty(job, scan, plan, mesh.vertices.size());
-  need(write_mesh(job.output, mesh.vertices, mesh.triangles, plan.writing().encoding, mesh.normals,
-                  plan.mesh_format()));
-  Json json = report_json(scan, settings, mesh.vertices.size(), ms);
-  json["triangles"] = mesh.triangles.size();
-  return {json, fmt::format("{} -> {}  {} vertices, {} triangles, {}\n", job.input, job.output,
-                            count_text(mesh.vertices.size()), count_text(mesh.triangles.size()),
-                            milliseconds_text(ms))};
-}
-
-Outcome write_cloud_of(const Job& job, const DecodedScan& scan, const DecodePlan& plan,
-                       Clock::time_point start, const ProgressCallback& progress) {
-  const ReconstructSettings settings = plan.settings(scan);
-  const Cloud cloud = plan.cloud(scan, settings, progress);
-  const double ms = milliseconds_since(start);
-  const std::size_t points = count_returns(cloud);
-  warn_if_empty(job, scan, plan, points);
-  warn_of_empty_slots(job, cloud, plan, points);
-  save_cloud(job.output, cloud, plan.writing(), kAttributesHint);
-  return {report_json(scan, settings, points, ms),
-          fmt::format("{} -> {}  {} points ({} coded), {}\n", job.input, job.output,
-                      count_text(points), count_text(scan.coded_returns), milliseconds_text(ms))};
-}
-
 int run(const DecodeCommand& command) {
   const DecodePlan plan(command);
-  const auto jobs = plan_jobs(command.inputs, command.output, plan.suffix());
-  return for_each_job(command.common, jobs, [&](const Job& job, const ProgressCallback& progress) {
-    const auto start = Clock::now();
+  SequenceJobs sequences(command, plan);
+  const std::vector<Job> jobs = sequences.plan_jobs();
+  const auto decode_one = [&](const Job& job, const ProgressCallback& progress) {
+    const auto start = DecodeClock::now();
+    if (job.scan) {
+      return write_decoded(job, sequences.decode(job), plan, start, progress);
+    }
     const DecodedScan scan = load(job, plan.decoding());
     if (!scan.missing.empty()) print_warning(missing_text(job.input, scan.missing));
-    const auto second_half = [&](std::string_view stage, double fraction) {
-      progress(stage, 0.1 + 0.8 * fraction);
-    };
-    return plan.mesh() ? write_mesh_of(job, scan, plan, start, second_half)
-                       : write_cloud_of(job, scan, plan, start, second_half);
-  });
+    return write_decoded(job, scan, plan, start, progress);
+  };
+  const int code = for_each_job(command.common, jobs, decode_one);
+  const int whole = sequences.finish();
+  return code != kExitOk ? code : whole;
 }
 
 }  // namespace

@@ -106,6 +106,12 @@ void add_attribute_options(CLI::App& app, DecodeCommand& command) {
 
 void add_part_options(CLI::App& app, DecodeCommand& command) {
   const char* group = "Which part of the file";
+  app.add_option(
+         "--scan", command.scan,
+         "Of a sequence: scan K, counted from 0, or scans BEGIN .. END-1; default all, into "
+         "a directory")
+      ->type_name("K|BEGIN:END")
+      ->group(group);
   app.add_option("--rings", command.rings,
                  "Only rings BEGIN .. END-1, 0 the highest (compact files)")
       ->type_name("BEGIN:END")
@@ -131,8 +137,8 @@ void add_part_options(CLI::App& app, DecodeCommand& command) {
 void add_decode_options(CLI::App& app, DecodeCommand& command) {
   app.add_option("inputs", command.inputs, ".curl files; - is standard input")->required();
   app.add_option("-o,--output", command.output,
-                 "File, or directory for many inputs; default NAME.decoded.pcd beside the input, "
-                 "- is standard output");
+                 "File, or directory for many inputs or scans; default NAME.decoded.pcd beside the "
+                 "input, - is standard output");
   app.add_option("--format", command.format,
                  fmt::format("Format of the output: {}; of --mesh ply, obj; default by extension",
                              kFormatNames));

@@ -14,6 +14,7 @@ struct DecodeCommand {
   CommonOptions common;
   std::vector<std::string> inputs;
   std::string output, format, encoding = "binary", attributes = "all";
+  std::string scan;
   std::string rings, azimuth, region;
   bool field_only = false, allow_truncated = false;
 

@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "common_compact.hpp"
 #include "common_inputs.hpp"
+#include "info_sequence.hpp"
 
 namespace curlidar::app {
 namespace {
@@ -17,12 +18,14 @@ namespace {
 constexpr const char* kFooter = R"(Examples:
   curlidar info scan.bin                        what --sensor auto sees
   curlidar info scan.pcd --sensor os1-64        the same scan through a given profile
-  curlidar info scan.curl --json)";
+  curlidar info scan.curl --json
+  curlidar info drive.curl --poses-out poses.txt   every scan of a sequence, and its poses)";
 
 struct Options {
   CommonOptions common;
   std::vector<std::string> inputs;
   std::string format, sensor = "auto";
+  std::string poses_out, times_out;
 };
 
 double degrees(double radians) {
@@ -387,8 +390,15 @@ Outcome describe_curl(const Job& job, std::span<const std::byte> bytes, std::siz
 int run(const Options& options) {
   const auto sensor = parse_sensor(options.sensor);
   parse_format(options.format);  // said wrongly, it is a matter of usage
+  const bool writes = !options.poses_out.empty() || !options.times_out.empty();
+  if (writes && (options.inputs.size() != 1 || !is_sequence_file(options.inputs.front()))) {
+    usage_error("--poses-out and --times-out write what one sequence holds");
+  }
   return for_each_job(options.common, plan_jobs(options.inputs),
                       [&](const Job& job, const ProgressCallback&) {
+                        if (job.input != "-" && is_sequence_file(job.input)) {
+                          return describe_sequence(job.input, options.poses_out, options.times_out);
+                        }
                         const std::vector<std::byte> bytes = need(read_file(job.input));
                         return options.format.empty() && is_curl(bytes)
                                    ? describe_curl(job, bytes, options.common.threads)
@@ -407,6 +417,11 @@ Command add_info(CLI::App& root) {
   app->add_option("--sensor", options->sensor, kSensorHelp)->capture_default_str();
   app->add_option("--format", options->format,
                   fmt::format("Format of the input: {}; default by content", kFormatNames));
+  app->add_option("--poses-out", options->poses_out,
+                  "Of a sequence with poses: write them, as .csv, .tum or KITTI's lines")
+      ->type_name("FILE");
+  app->add_option("--times-out", options->times_out, "Of a sequence with times: write them")
+      ->type_name("FILE");
   add_common_options(*app, options->common);
   return {app, [options] { return run(*options); }};
 }

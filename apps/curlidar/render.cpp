@@ -30,6 +30,7 @@ struct Options {
   std::string output, format, view = "perspective", colour = "height", reference, size = "1280x0";
   RenderSettings render;
   ReconstructSettings reconstruct;
+  std::optional<std::size_t> scan;
 };
 
 void parse_size(const std::string& text, RenderSettings& settings) {
@@ -94,11 +95,12 @@ std::vector<PartitionBlock> blocks_of(const DecodedScan& scan, View view) {
 
 /// The picture of a file's blocks.
 Image partition_picture(const std::string& path, const RenderSettings& settings,
-                        std::size_t threads, std::size_t& points) {
+                        std::size_t threads, const std::optional<std::size_t>& scan_chosen,
+                        std::size_t& points) {
   DecodeOptions decoding;
   decoding.partition = true;
   decoding.threads = threads;
-  const DecodedScan scan = load_curl(path, decoding);
+  const DecodedScan scan = load_curl(path, decoding, scan_chosen);
   const std::vector<PartitionBlock> blocks = blocks_of(scan, settings.view);
   ReconstructSettings plain;
   plain.organised = true;
@@ -111,11 +113,12 @@ Image partition_picture(const std::string& path, const RenderSettings& settings,
 int run(const Options& options) {
   const RenderSettings settings = render_settings(options);
   const auto format = parse_format(options.format);
+  check_scan_choice(options.scan, options.inputs);
   const std::vector<Job> jobs = plan_jobs(options.inputs, options.output, ".png");
   Cloud reference;
   if (!options.reference.empty()) {
     for (const Job& job : jobs) refuse_same_file(options.reference, job.output);
-    reference = load_cloud(options.reference, std::nullopt);
+    reference = load_cloud(options.reference, std::nullopt, {}, options.scan);
   }
   ReconstructSettings reconstruct_settings = options.reconstruct;
   reconstruct_settings.threads = options.common.threads;
@@ -123,9 +126,9 @@ int run(const Options& options) {
     Image image;
     std::size_t points = 0;
     if (shows_partition(settings)) {
-      image = partition_picture(job.input, settings, options.common.threads, points);
+      image = partition_picture(job.input, settings, options.common.threads, options.scan, points);
     } else {
-      const Cloud cloud = load_cloud(job.input, format, reconstruct_settings);
+      const Cloud cloud = load_cloud(job.input, format, reconstruct_settings, options.scan);
       progress("draw", 0.5);
       std::vector<double> values;
       if (settings.colour == ColourBy::error) {
@@ -187,6 +190,7 @@ Command add_render(CLI::App& root) {
                   "File, or directory for many inputs; default NAME.png beside the input, - is "
                   "standard output");
   add_picture_options(*app, *options);
+  app->add_option("--scan", options->scan, kScanHelp)->type_name("K");
   const auto factor = number_in(1e-3, 65536.0);
   app->add_option("--rows", options->reconstruct.rows, "R_row with which .curl files are decoded")
       ->capture_default_str()

@@ -16,9 +16,10 @@
 #include "curlidar/motion.hpp"
 #include "curlidar/progress.hpp"
 #include "curlidar/result.hpp"
-#include "curlidar/verify.hpp"
 
 namespace curlidar {
+
+class RandomAccess;
 
 /// Scans of a group: seeking decodes this many at most, damage reaches no further.
 inline constexpr std::uint32_t kSequenceGroup = 10;
@@ -105,5 +106,93 @@ class SequenceDecoder {
 
 /// Kind of a frame; corrupt if its first byte tells none.
 Result<FrameKind> frame_kind(std::span<const std::byte> frame);
+
+/// Writes a sequence file as the scans come: it holds the frames of one group, whatever their
+/// number. The file appears when it is finished; until then, and on errors, there is none.
+class SequenceWriter {
+ public:
+  /// Errors: invalid_argument; io where no file can be made.
+  static Result<SequenceWriter> create(const std::string& path, const SequenceSettings& settings);
+  SequenceWriter(SequenceWriter&&) noexcept;
+  SequenceWriter& operator=(SequenceWriter&&) noexcept;
+  /// Without finish() before it, nothing is left.
+  ~SequenceWriter();
+
+  /// Codes and keeps a scan. Either all scans of a group have a time or none; likewise poses.
+  /// Errors: as of SequenceEncoder::add; of stamps that cannot be kept; io.
+  Result<EncodedFrame> add(const Cloud& cloud, const ScanStamp& stamp = {},
+                           const ProgressCallback& progress = {});
+  /// Bytes of the file. Errors: invalid_argument without a scan; io.
+  Result<std::uint64_t> finish();
+
+ private:
+  struct State;
+  explicit SequenceWriter(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// What a file tells of a scan without decoding it.
+struct SequenceScan {
+  FrameKind kind = FrameKind::first;
+  std::size_t group = 0;
+  std::size_t bytes = 0;  ///< of its frame
+  std::uint64_t returns = 0;
+  ScanStamp stamp;
+};
+
+/// What a file tells of a group without reading it.
+struct SequencePart {
+  std::uint64_t first_scan = 0, scans = 0, returns = 0;
+  std::uint64_t bytes = 0;
+  std::optional<double> time_s{};  ///< of its first scan
+};
+
+struct SequenceReadOptions {
+  DecodeLimits limits{};
+  std::size_t threads = 1;
+  /// Takes files that are cut off or whose index is damaged as far as they go.
+  bool allow_truncated = false;
+};
+
+/// A sequence file: any scan of it, at the cost of those of its group before it. Scans that are
+/// read in their order cost one decoding each. Groups that are damaged harm no others.
+class SequenceFile {
+ public:
+  /// Errors: not_found, io; corrupt; unsupported (another kind of file); limit_exceeded.
+  static Result<SequenceFile> open(const std::string& path,
+                                   const SequenceReadOptions& options = {});
+  /// The same from memory; `name` is used for messages.
+  static Result<SequenceFile> parse(std::vector<std::byte> bytes, const std::string& name,
+                                    const SequenceReadOptions& options = {});
+  SequenceFile(SequenceFile&&) noexcept;
+  SequenceFile& operator=(SequenceFile&&) noexcept;
+  ~SequenceFile();
+
+  std::size_t scans() const;
+  std::uint64_t bytes() const;  ///< of the whole file
+  std::uint32_t group_size() const;
+  bool still() const;
+  const std::vector<SequencePart>& groups() const;
+  /// What should be there and is not, one sentence each: the file was cut off.
+  const std::vector<std::string>& missing() const;
+
+  /// What is known of a scan. Errors: invalid_argument behind the end; corrupt if its group is
+  /// damaged, naming the scans that are lost.
+  Result<SequenceScan> scan(std::size_t index);
+  /// A scan. Limits and threads are the file's, `allow_truncated` means nothing here. Errors: as
+  /// of scan(), and those of decode().
+  Result<DecodedScan> decode(std::size_t index, const DecodeOptions& options = {});
+
+ private:
+  struct State;
+  explicit SequenceFile(std::unique_ptr<State> state);
+  static Result<SequenceFile> open(std::shared_ptr<const RandomAccess> source,
+                                   const SequenceReadOptions& options);
+  std::unique_ptr<State> state_;
+};
+
+/// Whether a file is a sequence, told by its first bytes; false if it cannot be read.
+bool is_sequence_file(const std::string& path);
+bool is_sequence(std::span<const std::byte> bytes);
 
 }  // namespace curlidar

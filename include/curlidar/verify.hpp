@@ -40,4 +40,7 @@ struct Verification {
 Result<Verification> verify(std::span<const std::byte> bytes, const Cloud& cloud,
                             std::size_t threads = 1);
 
+/// The same of a scan that is decoded already, as those of sequences are.
+Result<Verification> verify(const DecodedScan& scan, const Cloud& cloud, std::size_t threads = 1);
+
 }  // namespace curlidar

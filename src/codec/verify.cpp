@@ -194,13 +194,14 @@ Result<DecodedScan> decode_all(ByteSpan bytes, std::size_t threads,
   options.reference = reference;
   options.threads = threads;
   options.limits = {UINT64_MAX, UINT64_MAX};
-  CURLIDAR_TRY_ASSIGN(scan, decode(bytes, options));
-  if (!scan.cloud) {
-    return Error{ErrorCode::unsupported,
-                 "the file does not hold every return in its place (it is of the paper's profiles "
-                 "or an image): encode the scan without --cols and limits of range"};
-  }
-  return scan;
+  return decode(bytes, options);
+}
+
+Status check_every_return(const DecodedScan& scan) {
+  if (scan.cloud) return {};
+  return Error{ErrorCode::unsupported,
+               "the file does not hold every return in its place (it is of the paper's profiles "
+               "or an image): encode the scan without --cols and limits of range"};
 }
 
 Verification compare_slots(const DecodedScan& scan, const Cloud& cloud) {
@@ -223,11 +224,17 @@ Verification compare_slots(const DecodedScan& scan, const Cloud& cloud) {
 Result<Verification> verify_slots(ByteSpan bytes, const Cloud& cloud, std::size_t threads,
                                   const std::shared_ptr<const PredictionReference>& reference) {
   CURLIDAR_TRY_ASSIGN(scan, decode_all(bytes, threads, reference));
+  CURLIDAR_TRY(check_every_return(scan));
   return compare_slots(scan, cloud);
 }
 
 Result<Verification> verify(ByteSpan bytes, const Cloud& cloud, std::size_t threads) {
   CURLIDAR_TRY_ASSIGN(scan, decode_all(bytes, threads, {}));
+  return verify(scan, cloud, threads);
+}
+
+Result<Verification> verify(const DecodedScan& scan, const Cloud& cloud, std::size_t threads) {
+  CURLIDAR_TRY(check_every_return(scan));
   if (!scan.records->promise.any_order) return compare_slots(scan, cloud);
   Verification out;
   out.promise = scan.records->promise;

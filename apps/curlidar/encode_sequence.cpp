@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// encode --sequence: many scans into one file.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "common_scans.hpp"
+#include "curlidar/pose.hpp"
+#include "curlidar/sequence.hpp"
+#include "encode_plan.hpp"
+#include "encode_report.hpp"
+
+namespace curlidar::app {
+namespace {
+
+/// What has been written so far.
+struct Totals {
+  std::size_t scans = 0, predicted = 0, groups = 0;
+  std::uint64_t returns = 0, frame_bytes = 0;
+  double error_sum_m = 0;  ///< of all returns coded
+  std::uint64_t coded = 0;
+  double ms = 0;
+
+  void add(const EncodedFrame& frame) {
+    const EncodeReport& report = frame.report;
+    ++scans;
+    predicted += frame.kind == FrameKind::predicted ? 1 : 0;
+    groups += frame.kind == FrameKind::first ? 1 : 0;
+    returns += report.points_in;
+    frame_bytes += frame.bytes.size();
+    if (report.compact) {
+      coded += report.points_coded;
+      error_sum_m += report.compact->mean_error_m * static_cast<double>(report.points_coded);
+    }
+    for (const StageTime& stage : report.stages_ms) ms += stage.ms;
+  }
+  double mean_error_m() const {
+    return error_sum_m / static_cast<double>(std::max<std::uint64_t>(coded, 1));
+  }
+};
+
+double bits_a_point(std::uint64_t bytes, std::uint64_t points) {
+  return 8.0 * static_cast<double>(bytes) / static_cast<double>(std::max<std::uint64_t>(points, 1));
+}
+
+/// Settings of a sequence: those of a scan, in one segment unless parts were asked for.
+SequenceSettings sequence_settings(const EncodeCommand& command, const Cloud& cloud) {
+  SequenceSettings settings;
+  settings.encode = encode_settings(command, cloud);
+  if (!command.compact.asks_for_segments()) settings.encode.compact.index = false;
+  if (command.sequence.group > 0) settings.group = command.sequence.group;
+  settings.still = command.sequence.still;
+  return settings;
+}
+
+Json scan_json(const std::string& input, const EncodedFrame& frame) {
+  const EncodeReport& report = frame.report;
+  Json json = {{"input", input},
+               {"kind", to_string(frame.kind)},
+               {"points_in", report.points_in},
+               {"points_coded", report.points_coded},
+               {"bytes", frame.bytes.size()},
+               {"bits_per_point", report.bits_per_point}};
+  if (report.compact) {
+    json["mean_error_m"] = report.compact->mean_error_m;
+    json["max_error_m"] = report.compact->max_error_m;
+    json["step_m"] = report.compact->step_m;
+    json["breakdown"] = breakdown_json(report.compact->breakdown);
+  }
+  return json;
+}
+
+std::string scan_text(std::size_t number, const std::string& input, const EncodedFrame& frame) {
+  return fmt::format("{:>6}  {:<9} {:>10} points {:>9} {:6.3f} bits a point  {}\n", number,
+                     to_string(frame.kind), count_text(frame.report.points_in),
+                     bytes_text(frame.bytes.size()), frame.report.bits_per_point, input);
+}
+
+Json summary_json(const EncodeCommand& command, const SequenceSettings& settings,
+                  const Totals& totals, std::uint64_t bytes, Json scans) {
+  return {{"output", command.output},
+          {"profile", to_string(settings.encode.profile)},
+          {"scans", totals.scans},
+          {"groups", totals.groups},
+          {"group", settings.group},
+          {"static", settings.still},
+          {"predicted", totals.predicted},
+          {"points_in", totals.returns},
+          {"bytes", bytes},
+          {"bits_per_point", bits_a_point(bytes, totals.returns)},
+          {"mean_error_m", totals.coded > 0 ? Json(totals.mean_error_m()) : Json()},
+          {"encode_ms", totals.ms},
+          {"frames", std::move(scans)}};
+}
+
+std::string summary_text(const EncodeCommand& command, const SequenceSettings& settings,
+                         const Totals& totals, std::uint64_t bytes) {
+  Table table;
+  table.add({"scans", fmt::format("{}, {} predicted", count_text(totals.scans),
+                                  count_text(totals.predicted))});
+  table.add({"groups", fmt::format("{} of {}", count_text(totals.groups), settings.group)});
+  table.add({"points", count_text(totals.returns)});
+  table.add({"size", bytes_text(bytes)});
+  table.add({"bits per point in", fmt::format("{:.4f}", bits_a_point(bytes, totals.returns))});
+  if (totals.coded > 0) table.add({"mean error", length_text(totals.mean_error_m())});
+  table.add({"time", milliseconds_text(totals.ms)});
+  return fmt::format("{} scans -> {}\n{}", totals.scans, command.output, table.text());
+}
+
+/// One time in seconds on each line; lines without a word are passed over.
+std::vector<double> read_times(const std::string& path) {
+  const std::vector<std::byte> bytes = need(read_file(path));
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::vector<double> times;
+  std::size_t number = 1;
+  for (std::size_t begin = 0; begin < text.size(); ++number) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::string_view line = text.substr(begin, end - begin);
+    begin = end + 1;
+    constexpr std::string_view kBlank = " \t\r";
+    line.remove_prefix(std::min(line.find_first_not_of(kBlank), line.size()));
+    line = line.substr(0, line.find_last_not_of(kBlank) + 1);
+    if (line.empty() || line.starts_with('#')) continue;
+    double time = 0;
+    const auto [stop, error] = std::from_chars(line.data(), line.data() + line.size(), time);
+    if (error != std::errc() || stop != line.data() + line.size()) {
+      throw Failure(
+          {ErrorCode::corrupt, fmt::format("{}: line {}: not a time in seconds", path, number)},
+          kExitInput);
+    }
+    times.push_back(time);
+  }
+  return times;
+}
+
+/// There may be more than scans: those of a longer drive.
+void check_count(const std::string& path, const char* what, std::size_t found, std::size_t scans) {
+  if (found < scans) {
+    throw Failure({ErrorCode::invalid_argument,
+                   fmt::format("{}: {} {} for {} scans", path, found, what, scans)},
+                  kExitInput);
+  }
+  if (found > scans) {
+    print_warning(
+        fmt::format("{}: {} {} for {} scans: the first ones are taken", path, found, what, scans));
+  }
+}
+
+/// Times and poses of the scans, as far as files were given.
+std::vector<ScanStamp> read_stamps(const SequenceOptions& options, std::size_t scans) {
+  std::vector<ScanStamp> stamps(scans);
+  if (options.poses.empty() && !options.calibration.empty()) {
+    usage_error("--calib belongs to camera poses: give them with --poses");
+  }
+  if (!options.poses.empty()) {
+    PoseReadOptions reading;
+    reading.calib_path = options.calibration;
+    const PoseTrack track = need(read_poses(options.poses, reading));
+    for (const std::string& warning : track.warnings) {
+      print_warning(fmt::format("{}: {}", options.poses, warning));
+    }
+    check_count(options.poses, "poses", track.T_map_sensor.size(), scans);
+    for (std::size_t i = 0; i < scans; ++i) {
+      stamps[i].T_map_sensor = track.T_map_sensor[i];
+      if (!track.time_s.empty()) stamps[i].time_s = track.time_s[i];
+    }
+  }
+  if (!options.times.empty()) {
+    const std::vector<double> times = read_times(options.times);
+    check_count(options.times, "times", times.size(), scans);
+    for (std::size_t i = 0; i < scans; ++i) stamps[i].time_s = times[i];
+  }
+  return stamps;
+}
+
+void check_output(const EncodeCommand& command) {
+  if (command.output.empty() || command.output == "-" || is_directory(command.output)) {
+    usage_error("--sequence makes one file: name it with -o, such as -o drive.curl");
+  }
+}
+
+}  // namespace
+
+int run_encode_sequence(const EncodeCommand& command) {
+  check_output(command);
+  const auto metadata = parse_metadata(command.metadata);
+  ReadOptions read_options;
+  read_options.format = parse_format(command.format);
+  const std::vector<std::string> inputs = expand_folders(command.inputs);
+  refuse_coded(inputs);
+  for (const std::string& input : inputs) refuse_same_file(input, command.output);
+
+  const std::vector<ScanStamp> stamps = read_stamps(command.sequence, inputs.size());
+
+  std::optional<SequenceWriter> writer;
+  SequenceSettings settings;
+  Totals totals;
+  Json scans = Json::array();
+  ProgressBar bar(!command.common.quiet);
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const ProgressCallback progress = [&](std::string_view stage, double fraction) {
+      bar.update(i, inputs.size(), stage, fraction);
+    };
+    progress(inputs[i], 0);
+    Cloud cloud = need(read_cloud(inputs[i], read_options));
+    if (!writer) {
+      settings = sequence_settings(command, cloud);
+      writer.emplace(need(SequenceWriter::create(command.output, settings)));
+    }
+    set_metadata(metadata, settings.encode, inputs[i], cloud);
+    auto added = writer->add(cloud, stamps[i], progress);
+    if (!added) {
+      throw Failure({added.error().code, fmt::format("{}: {}", inputs[i], added.error().message)},
+                    exit_code_of(added.error().code));
+    }
+    totals.add(*added);
+    bar.clear();
+    if (command.common.json) {
+      scans.push_back(scan_json(inputs[i], *added));
+    } else {
+      print_text(command.common, scan_text(i, inputs[i], *added));
+    }
+  }
+  const std::uint64_t bytes = need(writer->finish());
+  print_result(command.common, {summary_json(command, settings, totals, bytes, std::move(scans)),
+                                summary_text(command, settings, totals, bytes)});
+  return kExitOk;
+}
+
+}  // namespace curlidar::app

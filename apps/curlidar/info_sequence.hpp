@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What `curlidar info` tells of a sequence.
+#pragma once
+
+#include <string>
+
+#include "common_inputs.hpp"
+
+namespace curlidar::app {
+
+/// Every scan of the file, decoding none. Writes its poses and times to the files named, if any.
+/// Groups that are damaged are named and make the exit code that of damaged input. Failure.
+Outcome describe_sequence(const std::string& path, const std::string& poses_out,
+                          const std::string& times_out);
+
+}  // namespace curlidar::app
