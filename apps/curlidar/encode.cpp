@@ -27,6 +27,7 @@ The order is: preset, then what the profile changes, then the options given here
 int run(const EncodeCommand& command) {
   encode_settings(command, {});  // wrong usage shows before a scan is read
   if (command.sequence.sequence) return run_encode_sequence(command);
+  refuse_poses(command.sequence.poses);
   const auto metadata = parse_metadata(command.metadata);
   const auto format = parse_format(command.format);
   refuse_coded(command.inputs);

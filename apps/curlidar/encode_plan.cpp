@@ -31,15 +31,7 @@ void add_sequence_options(CLI::App& app, SequenceOptions& options) {
                                           kSequenceGroup))
                    ->check(number_in(1, kMaxSequenceGroup)));
   of_sequences(app.add_flag("--static", options.still, "The sensor stands still"));
-  of_sequences(
-      app.add_option("--times", options.times, "A file of one time in seconds for every scan")
-          ->type_name("FILE"));
-  of_sequences(app.add_option("--poses", options.poses,
-                              "Poses T_map_sensor of the scans: KITTI, TUM, matrices or CSV")
-                   ->type_name("FILE"));
-  of_sequences(app.add_option("--calib", options.calibration,
-                              "KITTI's calib.txt: the poses are those of its camera")
-                   ->type_name("FILE"));
+  add_pose_options(app, options.poses);
 }
 
 }  // namespace
@@ -76,6 +68,13 @@ EncodeSettings encode_settings(const EncodeCommand& command, const Cloud& cloud)
                             command.compact.first_given(), to_string(settings.profile)));
   }
   return settings;
+}
+
+void refuse_poses(const PoseOptions& poses) {
+  if (poses.path.empty() && poses.calib.empty() && poses.times.empty() && poses.format.empty()) {
+    return;
+  }
+  usage_error("--poses, --times and what belongs to them are kept in sequences: add --sequence");
 }
 
 void refuse_coded(const std::vector<std::string>& inputs) {

@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "common_scans.hpp"
-#include "curlidar/pose.hpp"
 #include "curlidar/sequence.hpp"
 #include "encode_plan.hpp"
 #include "encode_report.hpp"
@@ -111,68 +109,13 @@ std::string summary_text(const EncodeCommand& command, const SequenceSettings& s
   return fmt::format("{} scans -> {}\n{}", totals.scans, command.output, table.text());
 }
 
-/// One time in seconds on each line; lines without a word are passed over.
-std::vector<double> read_times(const std::string& path) {
-  const std::vector<std::byte> bytes = need(read_file(path));
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  std::vector<double> times;
-  std::size_t number = 1;
-  for (std::size_t begin = 0; begin < text.size(); ++number) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    std::string_view line = text.substr(begin, end - begin);
-    begin = end + 1;
-    constexpr std::string_view kBlank = " \t\r";
-    line.remove_prefix(std::min(line.find_first_not_of(kBlank), line.size()));
-    line = line.substr(0, line.find_last_not_of(kBlank) + 1);
-    if (line.empty() || line.starts_with('#')) continue;
-    double time = 0;
-    const auto [stop, error] = std::from_chars(line.data(), line.data() + line.size(), time);
-    if (error != std::errc() || stop != line.data() + line.size()) {
-      throw Failure(
-          {ErrorCode::corrupt, fmt::format("{}: line {}: not a time in seconds", path, number)},
-          kExitInput);
-    }
-    times.push_back(time);
-  }
-  return times;
-}
-
-/// There may be more than scans: those of a longer drive.
-void check_count(const std::string& path, const char* what, std::size_t found, std::size_t scans) {
-  if (found < scans) {
-    throw Failure({ErrorCode::invalid_argument,
-                   fmt::format("{}: {} {} for {} scans", path, found, what, scans)},
-                  kExitInput);
-  }
-  if (found > scans) {
-    print_warning(
-        fmt::format("{}: {} {} for {} scans: the first ones are taken", path, found, what, scans));
-  }
-}
-
 /// Times and poses of the scans, as far as files were given.
-std::vector<ScanStamp> read_stamps(const SequenceOptions& options, std::size_t scans) {
+std::vector<ScanStamp> stamps_of(const PoseOptions& options, std::size_t scans) {
+  const PoseTrack track = load_poses(options, scans);
   std::vector<ScanStamp> stamps(scans);
-  if (options.poses.empty() && !options.calibration.empty()) {
-    usage_error("--calib belongs to camera poses: give them with --poses");
-  }
-  if (!options.poses.empty()) {
-    PoseReadOptions reading;
-    reading.calib_path = options.calibration;
-    const PoseTrack track = need(read_poses(options.poses, reading));
-    for (const std::string& warning : track.warnings) {
-      print_warning(fmt::format("{}: {}", options.poses, warning));
-    }
-    check_count(options.poses, "poses", track.T_map_sensor.size(), scans);
-    for (std::size_t i = 0; i < scans; ++i) {
-      stamps[i].T_map_sensor = track.T_map_sensor[i];
-      if (!track.time_s.empty()) stamps[i].time_s = track.time_s[i];
-    }
-  }
-  if (!options.times.empty()) {
-    const std::vector<double> times = read_times(options.times);
-    check_count(options.times, "times", times.size(), scans);
-    for (std::size_t i = 0; i < scans; ++i) stamps[i].time_s = times[i];
+  for (std::size_t i = 0; i < scans; ++i) {
+    if (!track.T_map_sensor.empty()) stamps[i].T_map_sensor = track.T_map_sensor[i];
+    if (!track.time_s.empty()) stamps[i].time_s = track.time_s[i];
   }
   return stamps;
 }
@@ -190,11 +133,11 @@ int run_encode_sequence(const EncodeCommand& command) {
   const auto metadata = parse_metadata(command.metadata);
   ReadOptions read_options;
   read_options.format = parse_format(command.format);
-  const std::vector<std::string> inputs = expand_folders(command.inputs);
+  const std::vector<std::string> inputs = list_scans(command.inputs);
   refuse_coded(inputs);
   for (const std::string& input : inputs) refuse_same_file(input, command.output);
 
-  const std::vector<ScanStamp> stamps = read_stamps(command.sequence, inputs.size());
+  const std::vector<ScanStamp> stamps = stamps_of(command.sequence.poses, inputs.size());
 
   std::optional<SequenceWriter> writer;
   SequenceSettings settings;

@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "common_compact.hpp"
 #include "common_inputs.hpp"
+#include "curlidar/sequence.hpp"
 #include "info_sequence.hpp"
 
 namespace curlidar::app {
