@@ -132,7 +132,7 @@ TEST_F(MapFileTest, TilesMeetWithoutCracksOrDoubles) {
   }
   for (long x = 1; x < 159; ++x) {
     for (long y = -3; y < 11; ++y) {
-      EXPECT_EQ((cells[{x, y}]), 4) << x / 4.0 << " " << y / 4.0;
+      EXPECT_EQ((cells[{x, y}]), 4) << "cell " << x << " " << y;
     }
   }
 }
