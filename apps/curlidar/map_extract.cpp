@@ -117,9 +117,40 @@ std::vector<std::size_t> needed_scans(const MapFile& map, const MapExtractSettin
   return map.parts_in(box);
 }
 
+/// A keyframe with its points where they were taken.
+Result<Cloud> placed_scan(const MapFile& map, std::size_t number, const ReconstructSettings& dense,
+                          std::size_t threads) {
+  const auto scan = map.read_scan(number);
+  if (!scan) return scan.error();
+  DecodeOptions decoding;
+  decoding.threads = threads;
+  const auto decoded = decode(scan->file, decoding);
+  if (!decoded) return decoded.error();
+  Result<Cloud> points = reconstruct(*decoded, dense);
+  if (!points) return points;
+  for (Vec3& p : points->positions) {
+    if (is_return(p)) p = scan->T_map_sensor(p);
+  }
+  return points;
+}
+
+/// What is known of parts that cannot be used, and how the command ends for it.
+class DamagedParts {
+ public:
+  void add(const std::string& what) {
+    print_warning(what + "; the rest of the map is used");
+    ++count_;
+  }
+  std::size_t count() const { return count_; }
+  int exit_code() const { return count_ > 0 ? kExitInput : kExitOk; }
+
+ private:
+  std::size_t count_ = 0;
+};
+
 /// All keyframes, reconstructed and put where they were taken. Attributes are left behind.
 Cloud extract_scans(const ExtractOptions& options, const MapFile& map,
-                    const MapExtractSettings& settings, ProgressBar& bar) {
+                    const MapExtractSettings& settings, ProgressBar& bar, DamagedParts& damaged) {
   ReconstructSettings dense;
   dense.rows = options.rows.value_or(1);
   dense.columns = options.columns.value_or(1);
@@ -132,16 +163,15 @@ Cloud extract_scans(const ExtractOptions& options, const MapFile& map,
   const std::vector<std::size_t> needed = needed_scans(map, settings);
   for (const std::size_t i : needed) {
     bar.update(done++, needed.size(), "extract", 0);
-    const MapScan scan = need(map.read_scan(i));
-    DecodeOptions decoding;
-    decoding.threads = options.common.threads;
-    const DecodedScan decoded = need(decode(scan.file, decoding));
-    const Cloud points = need(reconstruct(decoded, dense));
-    for (const Vec3& p : points.positions) {
-      if (!is_return(p)) continue;
-      const Vec3 placed = scan.T_map_sensor(p);
-      const Vec3 local = placed - map.header().origin;
-      if (is_inside(settings, placed) && first(local)) cloud.positions.push_back(placed);
+    const auto points = placed_scan(map, i, dense, options.common.threads);
+    if (!points && points.error().code != ErrorCode::corrupt) need(points);
+    if (!points) {
+      damaged.add(fmt::format("scan {}: {}", i, points.error().message));
+      continue;
+    }
+    for (const Vec3& p : points->positions) {
+      if (!is_return(p) || !is_inside(settings, p)) continue;
+      if (first(p - map.header().origin)) cloud.positions.push_back(p);
     }
     if (cloud.size() > options.max_points) {
       throw Failure({ErrorCode::limit_exceeded,
@@ -178,13 +208,17 @@ int run_extract(const ExtractOptions& options) {
   const MapFile map = load_map(options.map, options.allow_truncated);
   refuse_other_kind(options, map.header().kind);
   ProgressBar bar(!options.common.quiet);
+  DamagedParts damaged;
   Cloud cloud;
   if (map.header().kind == MapKind::surface) {
-    cloud = need(extract_points(map, settings, [&](std::string_view stage, double fraction) {
+    const auto progress = [&](std::string_view stage, double fraction) {
       bar.update(0, 1, stage, fraction);
-    }));
+    };
+    std::vector<std::string> tiles;
+    cloud = need(extract_points(map, settings, progress, &tiles));
+    for (const std::string& tile : tiles) damaged.add(tile);
   } else {
-    cloud = extract_scans(options, map, settings, bar);
+    cloud = extract_scans(options, map, settings, bar, damaged);
   }
   bar.clear();
   if (cloud.size() == 0) print_warning("no surface lies there: the cloud is empty");
@@ -196,10 +230,12 @@ int run_extract(const ExtractOptions& options) {
                {{{"output", options.output},
                  {"points", cloud.size()},
                  {"bytes_map", map.file_bytes()},
+                 {"parts_damaged", damaged.count()},
+                 {"missing", map.missing()},
                  {"bits_per_point_out", bits}},
                 fmt::format("{}: {} points\n", options.output, count_text(cloud.size()))},
                options.output == "-");
-  return kExitOk;
+  return damaged.exit_code();
 }
 
 }  // namespace

@@ -198,8 +198,10 @@ struct MapExtractSettings {
   std::size_t max_points = 200'000'000;  ///< limit_exceeded beyond
 };
 /// Unorganised, float64, in the map's frame; "intensity" (float32) if the map holds it. Reads only
-/// the tiles that are needed.
+/// the tiles that are needed. With `damaged`, tiles that cannot be read are left out and told
+/// there, one sentence each; without, the first of them is the error.
 Result<Cloud> extract_points(const MapFile& map, const MapExtractSettings& settings = {},
-                             const ProgressCallback& progress = {});
+                             const ProgressCallback& progress = {},
+                             std::vector<std::string>* damaged = nullptr);
 
 }  // namespace curlidar

@@ -110,7 +110,7 @@ MapBox asked_box(const MapExtractSettings& settings) {
 }  // namespace
 
 Result<Cloud> extract_points(const MapFile& map, const MapExtractSettings& settings,
-                             const ProgressCallback& progress) {
+                             const ProgressCallback& progress, std::vector<std::string>* damaged) {
   if (!(settings.spacing_m >= 1e-3 && settings.spacing_m <= 1e3)) {
     return Error{
         ErrorCode::invalid_argument,
@@ -126,8 +126,13 @@ Result<Cloud> extract_points(const MapFile& map, const MapExtractSettings& setti
     if (progress)
       progress("extract", static_cast<double>(done++) / static_cast<double>(needed.size()));
     if (settings.tile && map.tiles()[i].key != *settings.tile) continue;
-    CURLIDAR_TRY_ASSIGN(tile, map.read_tile(i, settings.max_level));
-    CURLIDAR_TRY(sink.add_tile(tile, settings.spacing_m));
+    const auto tile = map.read_tile(i, settings.max_level);
+    if (!tile && (damaged == nullptr || tile.error().code == ErrorCode::io)) return tile.error();
+    if (!tile) {
+      damaged->push_back(tile.error().message);
+      continue;
+    }
+    CURLIDAR_TRY(sink.add_tile(*tile, settings.spacing_m));
   }
   return std::move(sink).finish(map.header().surface.intensity);
 }

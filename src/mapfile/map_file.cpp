@@ -240,10 +240,15 @@ Result<MapTile> MapFile::read_tile(std::size_t tile, std::uint32_t max_level) co
     return Error{ErrorCode::invalid_argument,
                  fmt::format("{}: a map of scans has no tiles", state_->file.name())};
   }
-  CURLIDAR_TRY_ASSIGN(bytes, read_part(tile));
+  const auto bytes = read_part(tile);
+  if (!bytes && tile < state_->tiles.size()) {
+    const TileKey& key = state_->tiles[tile].key;
+    return with_name(fmt::format("tile {},{}", key.x, key.y), bytes.error());
+  }
+  if (!bytes) return bytes.error();
   const std::string name = state_->part_name(state_->part_of[tile]);
   CURLIDAR_TRY_ASSIGN(decoded,
-                      decode_tile(bytes, state_->header, state_->options.tile, max_level, name));
+                      decode_tile(*bytes, state_->header, state_->options.tile, max_level, name));
   if (decoded.key != state_->tiles[tile].key) {
     return Error{ErrorCode::corrupt,
                  fmt::format("{}: another tile than the index says; the map is damaged", name)};

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Maps: built, made longer, asked for points; what a killed build leaves."""
 
+import json
 import os
 import signal
 import subprocess
@@ -18,6 +19,7 @@ class MapTest(CommandTest):
         cls.simulate("scans/0.pcd")
         cls.simulate("scans/1.pcd", "--seed", "1", "--noise", "0.01")
         cls.write_poses("poses.txt", [0, 0])
+        cls.write_poses("one.txt", [0])
         result = cls.execute("map", "build", "scans", "--poses", "poses.txt", "-o", "street.curl")
         assert result.returncode == 0, result.stderr.decode()
 
@@ -96,6 +98,47 @@ class MapTest(CommandTest):
         result = self.execute("map", "info", "cut.curl", "--allow-truncated", "--json")
         self.assertEqual(result.returncode, 0)
         self.assertIn(b"walking", result.stderr)
+
+    def run_damaged(self, *arguments):
+        """A command over a map with one damaged tile, which goes on without it."""
+        result = self.execute(*arguments, "--json")
+        message = result.stderr.decode()
+        self.assertEqual(result.returncode, INPUT, message)
+        self.assertEqual(message.count("warning"), 1, message)
+        self.assertIn("tile 0,0", message)
+        self.assertIn("the rest of the map", message)
+        return json.loads(result.stdout)
+
+    def test_a_damaged_tile_is_named_and_the_others_are_used(self):
+        tiles = self.run_json("map", "info", "street.curl", "--tiles")["tile_list"]
+        number = [(tile["x"], tile["y"]) for tile in tiles].index((0, 0))
+        self.assertGreater(len(tiles), 1)
+        data = bytearray(self.path("street.curl").read_bytes())
+        first = len(data) - self.run_json("map", "info", "street.curl")["bytes_index"]
+        for tile in reversed(tiles[number:]):
+            first -= tile["bytes"] + 4
+            frame = 2 if tile["bytes"] < 128 else 3
+            first -= frame
+        data[first + 10] ^= 1
+        self.path("hurt.curl").write_bytes(data)
+        whole = self.run_json("map", "extract", "street.curl", "-o", "whole.ply")["points"]
+        rest = self.run_damaged("map", "extract", "hurt.curl", "-o", "rest.ply")
+        self.assertEqual(rest["parts_damaged"], 1)
+        self.assertTrue(0 < rest["points"] < whole)
+        self.run_damaged("map", "sample", "hurt.curl", "--sensor", "vlp16", "--pose", "0,0,0",
+                         "-o", "rest.pcd")
+        self.run_damaged("map", "compare", "hurt.curl", "whole.ply")
+        self.run_damaged("map", "render", "hurt.curl", "-o", "rest.png", "--size", "160x0")
+        # What does not touch it knows nothing of it.
+        other = next(tile for tile in tiles if (tile["x"], tile["y"]) != (0, 0))
+        self.run_ok("map", "extract", "hurt.curl", "--tile", f"{other['x']},{other['y']}", "-o",
+                    "other.ply", "--quiet")
+        # A longer map keeps what is whole.
+        longer = self.execute("map", "append", "hurt.curl", "scans/0.pcd", "--poses", "one.txt",
+                              "-o", "mended.curl")
+        self.assertEqual(longer.returncode, 0, longer.stderr.decode())
+        self.assertIn(b"made anew", longer.stderr)
+        self.run_ok("map", "extract", "mended.curl", "-o", "mended.ply")
 
     def test_a_build_that_is_ended_leaves_nothing_or_the_old_file(self):
         folder = self.folder / "killed"

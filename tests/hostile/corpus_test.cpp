@@ -16,6 +16,7 @@
 #include "hostile/targets/map.hpp"
 #include "hostile/targets/mask.hpp"
 #include "hostile/targets/points.hpp"
+#include "hostile/targets/poses.hpp"
 #include "hostile/targets/rays.hpp"
 #include "hostile/targets/records.hpp"
 #include "hostile/targets/residual.hpp"
@@ -38,6 +39,7 @@ constexpr Target kTargets[] = {{"container", test::container_target},
                                {"scan", test::scan_target},
                                {"decode", test::decode_target},
                                {"density", test::density_target},
+                               {"poses", test::poses_target},
                                {"rays", test::rays_target},
                                {"order", test::order_target},
                                {"records", test::records_target},
