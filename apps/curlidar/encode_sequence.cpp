@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -100,7 +101,8 @@ std::string summary_text(const EncodeCommand& command, const SequenceSettings& s
   Table table;
   table.add({"scans", fmt::format("{}, {} predicted", count_text(totals.scans),
                                   count_text(totals.predicted))});
-  table.add({"groups", fmt::format("{} of {}", count_text(totals.groups), settings.group)});
+  table.add(
+      {"groups", fmt::format("{} of up to {} scans", count_text(totals.groups), settings.group)});
   table.add({"points", count_text(totals.returns)});
   table.add({"size", bytes_text(bytes)});
   table.add({"bits per point in", fmt::format("{:.4f}", bits_a_point(bytes, totals.returns))});
@@ -166,6 +168,7 @@ int run_encode_sequence(const EncodeCommand& command) {
       scans.push_back(scan_json(inputs[i], *added));
     } else {
       print_text(command.common, scan_text(i, inputs[i], *added));
+      std::fflush(stdout);  // who waits for a long drive sees it grow, through a pipe as well
     }
   }
   const std::uint64_t bytes = need(writer->finish());

@@ -25,16 +25,41 @@ std::string scans_text(std::uint64_t first, std::uint64_t scans) {
                     : fmt::format("scans {} to {}", first, first + scans - 1);
 }
 
-/// What a group's own head tells of it as a part.
-SequencePart part_of(const SequenceGroup& group, std::uint64_t bytes) {
-  SequencePart part;
-  part.first_scan = group.first_scan;
-  part.scans = group.scans.size();
-  for (const GroupScan& scan : group.scans) part.returns += scan.returns;
-  part.bytes = bytes;
-  if (!group.scans.empty()) part.time_s = group.scans.front().stamp.time_s;
-  return part;
-}
+/// Groups one after the other in the order of the file, by what their own heads say.
+class GroupRow {
+ public:
+  void add_damaged(std::uint64_t bytes) {
+    SequencePart part;
+    part.first_scan = scans_;
+    part.bytes = bytes;
+    groups_.push_back(part);
+    damaged_bytes_ += bytes;
+  }
+  /// False if its scans cannot follow those before: numbers between them are those of damaged
+  /// groups, which have no more scans than bytes.
+  bool add(const SequenceGroup& group, std::uint64_t bytes) {
+    const std::uint64_t first = group.first_scan;
+    if (first < scans_ || first - scans_ > damaged_bytes_) return false;
+    if (group.scans.empty() || group.scans.size() > kMaxSequenceGroup) return false;
+    if (first > scans_) groups_.back().scans = first - scans_;
+    SequencePart part;
+    part.first_scan = first;
+    part.scans = group.scans.size();
+    for (const GroupScan& scan : group.scans) part.returns += scan.returns;
+    part.bytes = bytes;
+    part.time_s = group.scans.front().stamp.time_s;
+    groups_.push_back(part);
+    scans_ = first + part.scans;
+    damaged_bytes_ = 0;
+    return true;
+  }
+  std::vector<SequencePart>& groups() { return groups_; }
+
+ private:
+  std::vector<SequencePart> groups_;
+  std::uint64_t scans_ = 0;
+  std::uint64_t damaged_bytes_ = 0;  ///< since the last group that is whole
+};
 
 }  // namespace
 
@@ -56,7 +81,7 @@ struct SequenceFile::State {
 
   Status take_index();
   Status walk();
-  void take_torn_part();
+  void take_torn_part(GroupRow& row);
   Status load(std::size_t group_index);
   std::size_t group_of(std::uint64_t scan) const;
   Result<std::vector<std::byte>> bytes_of(std::size_t group_index) const;
@@ -70,6 +95,11 @@ Status SequenceFile::State::take_index() {
   std::uint64_t scans = 0;
   for (const IndexedEntry& entry : file.entries()) {
     CURLIDAR_TRY_ASSIGN(part, read_group_summary(entry.summary));
+    if (part.scans > entry.size) {
+      return Error{
+          ErrorCode::corrupt,
+          fmt::format("the index tells {} scans in a group of {} bytes", part.scans, entry.size)};
+    }
     part.first_scan = scans;
     part.bytes = entry.size;
     scans += part.scans;
@@ -78,44 +108,32 @@ Status SequenceFile::State::take_index() {
   return {};
 }
 
-/// Where the groups are, by their own heads; those that are damaged have the numbers between.
+/// Where the groups are, by their own heads.
 Status SequenceFile::State::walk() {
-  std::uint64_t scans = 0;
+  GroupRow row;
   for (std::size_t i = 0; i < file.entries().size(); ++i) {
-    SequencePart part;
-    part.first_scan = scans;
-    part.bytes = file.entries()[i].size;
-    if (const auto bytes = file.read(i)) {
-      const auto read = read_group(*bytes);
-      if (read && read->first_scan >= scans && read->scans.size() <= kMaxSequenceGroup) {
-        if (!groups.empty() && groups.back().scans == 0) {
-          groups.back().scans = read->first_scan - scans;
-        }
-        part = part_of(*read, part.bytes);
-        scans = part.first_scan + part.scans;
-      }
-    } else if (bytes.error().code == ErrorCode::io) {
-      return bytes.error();
-    }
-    groups.push_back(part);
+    const std::uint64_t size = file.entries()[i].size;
+    const auto bytes = file.read(i);
+    if (!bytes && bytes.error().code == ErrorCode::io) return bytes.error();
+    const auto read = bytes ? read_group(*bytes) : Result<SequenceGroup>(bytes.error());
+    if (!read || !row.add(*read, size)) row.add_damaged(size);
   }
   missing.push_back(file.missing().value_or("its end"));
-  take_torn_part();
+  take_torn_part(row);
+  groups = std::move(row.groups());
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (groups[i].scans > 0) continue;
+    missing.push_back(fmt::format("the scans of group {}, which is damaged", i));
+  }
   return {};
 }
 
 /// The group that the file was cut off in, if scans of it are whole.
-void SequenceFile::State::take_torn_part() {
-  std::uint64_t at = kHeaderSize;
-  if (file.entries().empty()) {
-    ByteWriter size;
-    size.write_varint(file.header().size() + 1);
-    at += 1 + size.size() + file.header().size() + 1 + kChecksumSize;
-  } else {
-    at = file.entries().back().offset + file.entries().back().size + kChecksumSize;
-  }
+void SequenceFile::State::take_torn_part(GroupRow& row) {
+  const std::uint64_t at = file.parts_end();
   if (at >= source->size()) return;
-  const auto bytes = source->read(at, source->size() - at);
+  const auto bytes =
+      source->read(at, std::min(source->size() - at, IndexedLimits{}.max_part_bytes));
   if (!bytes) return;
   ByteReader reader(*bytes);
   const auto type = static_cast<ChunkType>(reader.read<std::uint8_t>());
@@ -125,13 +143,8 @@ void SequenceFile::State::take_torn_part() {
   if (!cut) return;
   const ByteSpan left = reader.take(std::min<std::uint64_t>(size, reader.remaining()));
   const auto read = read_group(left, true);
-  const std::uint64_t scans = groups.empty() ? 0 : groups.back().first_scan + groups.back().scans;
-  if (!read || read->scans.empty() || read->first_scan < scans ||
-      read->scans.size() > kMaxSequenceGroup) {
-    return;
-  }
+  if (!read || !row.add(*read, left.size())) return;
   torn.emplace(left.begin(), left.end());
-  groups.push_back(part_of(*read, left.size()));
   missing.push_back(fmt::format("{} of the group that it was cut off in",
                                 scans_text(read->first_scan + read->scans.size(), read->lost)));
 }

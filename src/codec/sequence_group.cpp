@@ -72,12 +72,16 @@ Status place_frames(ByteSpan part, bool cut, ByteReader& reader, SequenceGroup& 
 
 }  // namespace
 
+Status GroupWriter::accepts(const ScanStamp& stamp) const {
+  CURLIDAR_TRY(rounded(stamp));
+  if (stamps_.empty() || told_by(stamp) == told_by(stamps_.front())) return {};
+  return Error{ErrorCode::invalid_argument,
+               "either all scans of a group have a time, or none; likewise a pose"};
+}
+
 Status GroupWriter::add(ByteSpan frame, std::uint64_t returns, const ScanStamp& stamp) {
+  CURLIDAR_TRY(accepts(stamp));
   CURLIDAR_TRY_ASSIGN(kept, rounded(stamp));
-  if (!stamps_.empty() && told_by(kept) != told_by(stamps_.front())) {
-    return Error{ErrorCode::invalid_argument,
-                 "either all scans of a group have a time, or none; likewise a pose"};
-  }
   frames_.emplace_back(frame.begin(), frame.end());
   returns_.push_back(returns);
   stamps_.push_back(kept);

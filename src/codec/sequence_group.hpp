@@ -29,6 +29,8 @@ struct SequenceGroup {
 class GroupWriter {
  public:
   /// Invalid_argument if the stamp cannot be held or differs in what it tells from the others.
+  Status accepts(const ScanStamp& stamp) const;
+  /// Errors: those of accepts().
   Status add(ByteSpan frame, std::uint64_t returns, const ScanStamp& stamp);
   std::size_t scans() const { return frames_.size(); }
   std::uint64_t returns() const;

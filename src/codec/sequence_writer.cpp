@@ -13,7 +13,8 @@ struct SequenceWriter::State {
   SequenceEncoder encoder;
   IndexedWriter file;
   GroupWriter group;
-  ScanStamp first_stamp;  ///< of the group
+  std::uint32_t most;       ///< scans of a group
+  ScanStamp first_stamp{};  ///< of the group
   std::uint64_t scans = 0;
 
   Status finish_group() {
@@ -35,7 +36,7 @@ Result<SequenceWriter> SequenceWriter::create(const std::string& path,
                       IndexedWriter::create(path, IndexedKind::sequence,
                                             write_sequence_head({settings.group, settings.still})));
   return SequenceWriter(
-      std::make_unique<State>(State{std::move(encoder), std::move(file), {}, {}, 0}));
+      std::make_unique<State>(State{std::move(encoder), std::move(file), {}, settings.group}));
 }
 
 SequenceWriter::SequenceWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -45,7 +46,9 @@ SequenceWriter::~SequenceWriter() = default;
 
 Result<EncodedFrame> SequenceWriter::add(const Cloud& cloud, const ScanStamp& stamp,
                                          const ProgressCallback& progress) {
-  CURLIDAR_TRY_ASSIGN(kept, rounded(stamp));  // before the work
+  // Before the work: a scan that the encoder took is one that others are predicted from.
+  CURLIDAR_TRY_ASSIGN(kept, rounded(stamp));
+  if (state_->group.scans() < state_->most) CURLIDAR_TRY(state_->group.accepts(kept));
   CURLIDAR_TRY_ASSIGN(frame, state_->encoder.add(cloud, kept, progress));
   if (frame.kind == FrameKind::first) {
     CURLIDAR_TRY(state_->finish_group());

@@ -270,6 +270,11 @@ Result<IndexedFile> IndexedFile::open(std::shared_ptr<const RandomAccess> source
   return file;
 }
 
+std::uint64_t IndexedFile::parts_end() const {
+  return entries_.empty() ? parts_begin_
+                          : entries_.back().offset + entries_.back().size + kChecksumSize;
+}
+
 Result<std::vector<std::byte>> IndexedFile::read(std::size_t part) const {
   if (part >= entries_.size()) {
     return Error{ErrorCode::invalid_argument,

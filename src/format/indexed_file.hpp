@@ -79,6 +79,8 @@ class IndexedFile {
   /// Of the whole file, and of index, footer and end in it.
   std::uint64_t file_bytes() const { return source_->size(); }
   std::uint64_t index_bytes() const { return index_bytes_; }
+  /// Where the chunk after the last part starts.
+  std::uint64_t parts_end() const;
   const std::string& name() const { return source_->name(); }
   /// What should be there and is not, in a sentence: only if the caller allowed it.
   const std::optional<std::string>& missing() const { return missing_; }

@@ -10,7 +10,15 @@ from support import CURLIDAR, FILE, INPUT, OK, USAGE, CommandTest
 
 SCANS = 5
 GROUP = 2
-QUICK_OPTIONS = ("--attributes", "none", "--effort", 1, "--step", 0.2)
+SENSOR = """name = "small"
+columns = 240
+fov_up_deg = 10
+fov_down_deg = -20
+max_range_m = 100
+[rings]
+elevation_deg = [10, 6, 3, 1, -1, -3, -6, -10, -14, -18]
+"""
+QUICK_OPTIONS = ("--sensor", "small.toml", "--attributes", "none", "--effort", 1, "--step", 0.2)
 
 
 class SequenceTest(CommandTest):
@@ -18,15 +26,17 @@ class SequenceTest(CommandTest):
     def setUpClass(cls):
         super().setUpClass()
         (cls.folder / "scans").mkdir()
+        (cls.folder / "small.toml").write_text(SENSOR)
         for i in range(SCANS):
-            cls.simulate(f"scans/{i:03}.pcd")
+            cls.ok("simulate", "--sensor", "small.toml", "--seed", i + 1, "-q",
+                   "-o", f"scans/{i:03}.pcd")
         (cls.folder / "times.txt").write_text("".join(f"{0.1 * i + 1e9:.6f}\n" for i in range(SCANS)))
         (cls.folder / "poses.txt").write_text(
             "".join(f"1 0 0 {i / 2} 0 1 0 -2.25 0 0 1 {i}\n" for i in range(SCANS)))
         cls.ok("encode", "scans", "--sequence", "--group", GROUP, "--static", *QUICK_OPTIONS,
                "--times", "times.txt", "--poses", "poses.txt", "-o", "drive.curl", "-q")
-        cls.ok("encode", "scans", "--sequence", "--group", 3, "--lossless", "--effort", 1,
-               "-o", "exact.curl", "-q")
+        cls.ok("encode", "scans", "--sequence", "--group", 3, "--sensor", "small.toml",
+               "--lossless", "--effort", 1, "-o", "exact.curl", "-q")
 
     @classmethod
     def ok(cls, *arguments):
@@ -94,8 +104,8 @@ class SequenceTest(CommandTest):
         self.assertTrue(report["ok"])
         self.assertTrue(all(scan["bit_exact"] for scan in report["scans"]))
         self.assertEqual(len(report["scans"]), SCANS)
-        self.ok("encode", "scans", "--sequence", "--max-error", 0.02, "--effort", 1,
-                "-o", "bound.curl", "-q")
+        self.ok("encode", "scans", "--sequence", "--sensor", "small.toml",
+                "--max-error", 0.02, "--effort", 1, "-o", "bound.curl", "-q")
         report = self.run_json("verify", "bound.curl", "scans")
         self.assertLessEqual(max(scan["max_error_m"] for scan in report["scans"]), 0.02)
         self.run_fail(INPUT, "verify", "exact.curl", "scans/000.pcd", says=["5"])
@@ -136,7 +146,8 @@ class SequenceTest(CommandTest):
 
     def test_an_interrupted_command_leaves_no_file(self):
         command = subprocess.Popen(
-            [CURLIDAR, "encode", *["scans"] * 40, "--sequence", "-o", "late.curl"],
+            [CURLIDAR, "encode", *["scans"] * 40, "--sequence", *map(str, QUICK_OPTIONS),
+             "-o", "late.curl"],
             cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         command.stdout.readline()  # the first scan is written
         command.send_signal(signal.SIGTERM)
