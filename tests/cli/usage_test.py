@@ -9,7 +9,8 @@ import unittest
 from support import CURLIDAR, FILE, INPUT, USAGE, CommandTest
 
 COMMANDS = ["encode", "decode", "mesh", "upsample", "convert", "info", "project", "compare",
-            "verify", "simulate", "render", "sensors", "calibrate", "demo", "map"]
+            "verify", "simulate", "render", "sensors", "calibrate", "demo", "register"]
+MAP_COMMANDS = ["build", "append", "info", "extract", "sample", "compare", "render"]
 
 
 class UsageTest(CommandTest):
@@ -19,18 +20,23 @@ class UsageTest(CommandTest):
 
     def test_help_lists_every_command_and_the_exit_codes(self):
         text = self.run_ok("--help").decode()
-        for command in [*COMMANDS, "report"]:
+        for command in [*COMMANDS, "map", "report"]:
             self.assertIn(f"\n  {command} ", text)
         self.assertIn("Exit codes:", text)
+        text = self.run_ok("map", "--help").decode()
+        for command in MAP_COMMANDS:
+            self.assertIn(f"\n  {command} ", text)
+        self.assertIn("Examples:", text)
 
     def test_every_command_explains_itself(self):
-        for command in COMMANDS:
-            with self.subTest(command=command):
-                text = self.run_ok(command, "--help").decode()
+        for words in [*([command] for command in COMMANDS),
+                      *(["map", command] for command in MAP_COMMANDS)]:
+            with self.subTest(command=words):
+                text = self.run_ok(*words, "--help").decode()
                 self.assertIn("--json", text)
                 self.assertIn("--threads", text)
                 self.assertIn("--quiet", text)
-                if command != "demo":
+                if words != ["demo"]:
                     self.assertIn("Examples:", text)
 
     def test_report_says_where_its_programs_should_be(self):
