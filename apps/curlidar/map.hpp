@@ -34,7 +34,7 @@ struct MapInputs {
   std::vector<std::string> inputs;
   std::string poses, calib, times, pose_format, format, every = "1", output;
   bool still = false;
-  double max_memory_mb = 400;
+  double max_memory_mb = 100;
 };
 void add_map_inputs(CLI::App& app, MapInputs& inputs);
 /// Offers all scans to the builder and writes the map.

@@ -36,6 +36,16 @@ bool SampleGrid::add(const Vec3& position, float intensity) {
   return true;
 }
 
+void SampleGrid::add_cell(std::uint64_t key, const Cell& cell) {
+  Cell& sum = cells_[key];
+  sum.points += cell.points;
+  sum.with_intensity += cell.with_intensity;
+  sum.x += cell.x;
+  sum.y += cell.y;
+  sum.z += cell.z;
+  sum.intensity += cell.intensity;
+}
+
 std::vector<MapSample> SampleGrid::samples() const {
   std::vector<std::uint64_t> keys;
   keys.reserve(cells_.size());

@@ -23,18 +23,23 @@ class SampleGrid {
   std::size_t size() const { return cells_.size(); }
   bool empty() const { return cells_.empty(); }
 
+  /// What is known of a cube; more of the same cube adds up exactly, in any order.
+  struct Cell {
+    std::uint32_t points = 0, with_intensity = 0;
+    std::int64_t x = 0, y = 0, z = 0;  ///< sums, from the cube's corner, in 1/65536 of its edge
+    double intensity = 0;              ///< sum of multiples of 2^-16
+  };
+  /// Cubes by their keys, in no order.
+  const std::unordered_map<std::uint64_t, Cell>& cells() const { return cells_; }
+  /// Adds what another grid of the same edge knows of a cube.
+  void add_cell(std::uint64_t key, const Cell& cell);
+
   /// One sample for each cube, at the mean of its points, sorted. Its weight grows with their
   /// number, but never above `kMostWeight`: to pass a street twice must not make it dear.
   std::vector<MapSample> samples() const;
   static constexpr float kMostWeight = 2;
 
  private:
-  struct Cell {
-    std::uint32_t points = 0, with_intensity = 0;
-    std::int64_t x = 0, y = 0, z = 0;  ///< sums, from the cube's corner, in 1/65536 of its edge
-    double intensity = 0;              ///< sum of multiples of 2^-16: exact in any order
-  };
-
   double edge_m_;
   std::unordered_map<std::uint64_t, Cell> cells_;
 };

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -15,69 +14,38 @@
 namespace curlidar {
 namespace {
 
-constexpr std::size_t kSampleBytes = 32;
+constexpr std::size_t kCellBytes = 48;
 
-std::vector<std::byte> samples_as_bytes(const std::vector<MapSample>& samples) {
+std::vector<std::byte> cells_as_bytes(const SampleGrid& grid) {
   ByteWriter writer;
-  for (const MapSample& sample : samples) {
-    writer.write(sample.position.x);
-    writer.write(sample.position.y);
-    writer.write(sample.position.z);
-    writer.write(sample.weight);
-    writer.write(sample.intensity);
+  for (const auto& [key, cell] : grid.cells()) {
+    writer.write(key);
+    writer.write(cell.points);
+    writer.write(cell.with_intensity);
+    for (const std::int64_t sum : {cell.x, cell.y, cell.z}) {
+      writer.write(static_cast<std::uint64_t>(sum));
+    }
+    writer.write(cell.intensity);
   }
   return std::move(writer).bytes();
 }
 
-void samples_from_bytes(ByteSpan bytes, std::vector<MapSample>& samples) {
+void add_cells(ByteSpan bytes, SampleGrid& grid) {
   ByteReader reader(bytes);
-  while (reader.remaining() >= kSampleBytes) {
-    MapSample sample;
-    sample.position.x = reader.read<double>();
-    sample.position.y = reader.read<double>();
-    sample.position.z = reader.read<double>();
-    sample.weight = reader.read<float>();
-    sample.intensity = reader.read<float>();
-    samples.push_back(sample);
+  while (reader.remaining() >= kCellBytes) {
+    const auto key = reader.read<std::uint64_t>();
+    SampleGrid::Cell cell;
+    cell.points = reader.read<std::uint32_t>();
+    cell.with_intensity = reader.read<std::uint32_t>();
+    for (std::int64_t* sum : {&cell.x, &cell.y, &cell.z}) {
+      *sum = static_cast<std::int64_t>(reader.read<std::uint64_t>());
+    }
+    cell.intensity = reader.read<double>();
+    grid.add_cell(key, cell);
   }
-}
-
-std::array<double, 3> cube_of(const Vec3& p, double edge_m) {
-  return {std::floor(p.x / edge_m), std::floor(p.y / edge_m), std::floor(p.z / edge_m)};
 }
 
 }  // namespace
-
-std::vector<MapSample> join_samples(std::vector<MapSample> samples, double thinning_m) {
-  const auto before = [&](const MapSample& a, const MapSample& b) {
-    return cube_of(a.position, thinning_m) < cube_of(b.position, thinning_m);
-  };
-  std::stable_sort(samples.begin(), samples.end(), before);
-  std::vector<MapSample> joined;
-  for (std::size_t begin = 0; begin < samples.size();) {
-    Vec3 sum{};
-    double weight = 0, bright = 0, brightness = 0;
-    std::size_t end = begin;
-    for (; end < samples.size() && !before(samples[begin], samples[end]); ++end) {
-      const MapSample& sample = samples[end];
-      const auto w = static_cast<double>(sample.weight);
-      sum = sum + sample.position * w;
-      weight += w;
-      if (!std::isfinite(sample.intensity)) continue;
-      brightness += w * static_cast<double>(sample.intensity);
-      bright += w;
-    }
-    MapSample one = samples[begin];
-    if (end - begin > 1) {
-      one.position = sum * (1 / weight);
-      one.weight = std::min(SampleGrid::kMostWeight, static_cast<float>(weight));
-      if (bright > 0) one.intensity = static_cast<float>(brightness / bright);
-    }
-    joined.push_back(one);
-    begin = end;
-  }
-  return joined;
-}
 
 Status TileStore::add(const Vec3& position, float intensity) {
   const double x = std::floor(position.x / side_m_), y = std::floor(position.y / side_m_);
@@ -110,9 +78,9 @@ Status TileStore::add(const Vec3& position, float intensity) {
 }
 
 Status TileStore::put_aside(Tile& tile) {
-  const std::vector<MapSample> samples = tile.grid.samples();
-  CURLIDAR_TRY_ASSIGN(offset, file_.append(samples_as_bytes(samples)));
-  tile.runs.push_back({offset, samples.size()});
+  const std::vector<std::byte> bytes = cells_as_bytes(tile.grid);
+  CURLIDAR_TRY_ASSIGN(offset, file_.append(bytes));
+  tile.runs.push_back({offset, bytes.size()});
   held_ -= tile.grid.size();
   tile.grid = SampleGrid(thinning_m_);
   return {};
@@ -143,16 +111,12 @@ std::vector<TileKey> TileStore::keys() const {
 
 Result<std::vector<MapSample>> TileStore::take(TileKey key) {
   Tile& tile = tiles_.at(key);
-  std::vector<MapSample> samples;
+  SampleGrid grid = std::exchange(tile.grid, SampleGrid(thinning_m_));
   for (const Run& run : tile.runs) {
-    CURLIDAR_TRY_ASSIGN(bytes, file_.read(run.offset, run.samples * kSampleBytes));
-    samples_from_bytes(bytes, samples);
+    CURLIDAR_TRY_ASSIGN(bytes, file_.read(run.offset, run.bytes));
+    add_cells(bytes, grid);
   }
-  const std::vector<MapSample> held = tile.grid.samples();
-  tile.grid = SampleGrid(thinning_m_);
-  if (samples.empty()) return held;
-  samples.insert(samples.end(), held.begin(), held.end());
-  return join_samples(std::move(samples), thinning_m_);
+  return grid.samples();
 }
 
 }  // namespace curlidar

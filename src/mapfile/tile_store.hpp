@@ -29,14 +29,15 @@ class TileStore {
 
   /// In the order of keys.
   std::vector<TileKey> keys() const;
-  /// All samples of a tile, which the store forgets in memory. What was put aside in pieces is
-  /// joined: one sample for each cube. Threads may take different tiles at once.
+  /// All samples of a tile, which the store forgets in memory. What was put aside in pieces adds up
+  /// to what would have been held: the limit never changes a sample. Threads may take different
+  /// tiles at once.
   Result<std::vector<MapSample>> take(TileKey key);
   std::size_t most_samples() const { return most_; }
 
  private:
   struct Run {
-    std::uint64_t offset = 0, samples = 0;
+    std::uint64_t offset = 0, bytes = 0;
   };
   struct Tile {
     SampleGrid grid;
@@ -55,8 +56,5 @@ class TileStore {
   std::size_t held_ = 0, most_ = 0;
   SpillFile file_;
 };
-
-/// Samples of one cube joined to one, by their weights.
-std::vector<MapSample> join_samples(std::vector<MapSample> samples, double thinning_m);
 
 }  // namespace curlidar

@@ -137,7 +137,7 @@ TEST_F(MapFileTest, TilesMeetWithoutCracksOrDoubles) {
   }
 }
 
-TEST_F(MapFileTest, BytesDoNotDependOnThreadsNorMuchOnMemory) {
+TEST_F(MapFileTest, BytesDependNeitherOnThreadsNorOnMemory) {
   MapBuildSettings one = settings(), many = settings(), tight = settings();
   many.threads = 3;
   tight.max_samples = 5000;
@@ -145,8 +145,7 @@ TEST_F(MapFileTest, BytesDoNotDependOnThreadsNorMuchOnMemory) {
   drive("many.curl", many, 8, {0, 0, 2});
   const MapReport report = drive("tight.curl", tight, 8, {0, 0, 2});
   EXPECT_EQ(read_file(path("one.curl")).value(), read_file(path("many.curl")).value());
-  const auto bytes = static_cast<double>(open("one.curl").file_bytes());
-  EXPECT_NEAR(static_cast<double>(report.bytes), bytes, 0.05 * bytes);
+  EXPECT_EQ(read_file(path("one.curl")).value(), read_file(path("tight.curl")).value());
   // A scan and the limit, not all of them.
   EXPECT_LT(report.most_samples, 20000u);
   EXPECT_GT(report.samples, 40000u);
