@@ -9,6 +9,7 @@
 
 #include "common_map_pictures.hpp"
 #include "common_maps.hpp"
+#include "common_pictures.hpp"
 #include "map.hpp"
 
 namespace curlidar::app {
@@ -103,27 +104,7 @@ void add_view_options(CLI::App& app, Options& options) {
   app.add_option("--view", options.view, "top or perspective")->capture_default_str();
   app.add_option("--colour,--color", options.colour, "height, intensity, normal or error")
       ->capture_default_str();
-  app.add_option("--size", options.size, "Pixels; height 0 = what suits the map")
-      ->type_name("WxH")
-      ->capture_default_str();
-  app.add_option("--min-value", options.render.value_min,
-                 "Value at the lower end of the colours; default the 2nd percentile");
-  app.add_option("--max-value", options.render.value_max,
-                 "Value at the upper end; default the 98th percentile");
-  app.add_option("--extent", options.render.extent_m,
-                 "Half width of the view from above, metres; 0 = fits")
-      ->capture_default_str();
-  app.add_option("--yaw", options.render.yaw_deg, "Camera around the map's middle, degrees")
-      ->capture_default_str();
-  app.add_option("--pitch", options.render.pitch_deg, "Camera above the horizon, degrees")
-      ->capture_default_str();
-  app.add_option("--distance", options.render.distance_m, "Camera distance, metres; 0 = fits")
-      ->capture_default_str();
-  app.add_option("--point-size", options.render.point_size_px, "Pixels; 0 = by density")
-      ->capture_default_str();
-  app.add_option("--clip-above", options.render.clip_above_m,
-                 "Leave out what is higher than this, metres: the ceiling of a room");
-  app.add_option("--title", options.render.title, "Text in the corner");
+  add_picture_options(app, options.render, options.size, "the map's middle", "the map's origin");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "commands.hpp"
 #include "common_inputs.hpp"
+#include "common_pictures.hpp"
 #include "curlidar/compare.hpp"
 #include "curlidar/reconstruct.hpp"
 
@@ -144,7 +145,7 @@ int run(const Options& options) {
   });
 }
 
-void add_picture_options(CLI::App& app, Options& options) {
+void add_view_options(CLI::App& app, Options& options) {
   app.add_option(
          "--view", options.view,
          "range-image, birds-eye, perspective, of a compact .curl file partition or layers, of "
@@ -154,28 +155,7 @@ void add_picture_options(CLI::App& app, Options& options) {
       ->capture_default_str();
   app.add_option("--reference", options.reference,
                  "For --colour error: cloud or .curl file to which distances are measured");
-  app.add_option("--size", options.size, "Pixels; height 0 = what suits the view")
-      ->type_name("WxH")
-      ->capture_default_str();
-  app.add_option("--min-value", options.render.value_min,
-                 "Value at the lower end of the colours; default the 2nd percentile");
-  app.add_option("--max-value", options.render.value_max,
-                 "Value at the upper end; default the 98th percentile");
-  app.add_option("--extent", options.render.extent_m,
-                 "Half width of the bird's-eye view, metres; 0 = fits")
-      ->capture_default_str();
-  app.add_option("--yaw", options.render.yaw_deg, "Camera around the sensor, degrees")
-      ->capture_default_str();
-  app.add_option("--pitch", options.render.pitch_deg, "Camera above the horizon, degrees")
-      ->capture_default_str();
-  app.add_option("--distance", options.render.distance_m, "Camera distance, metres; 0 = fits")
-      ->capture_default_str();
-  app.add_option("--point-size", options.render.point_size_px, "Pixels; 0 = by density")
-      ->capture_default_str();
-  app.add_option(
-      "--clip-above", options.render.clip_above_m,
-      "Leave out points higher than this above the sensor, metres: the ceiling of a room");
-  app.add_option("--title", options.render.title, "Text in the corner");
+  add_picture_options(app, options.render, options.size, "the sensor", "the sensor");
 }
 
 }  // namespace
@@ -189,7 +169,7 @@ Command add_render(CLI::App& root) {
   app->add_option("-o,--output", options->output,
                   "File, or directory for many inputs; default NAME.png beside the input, - is "
                   "standard output");
-  add_picture_options(*app, *options);
+  add_view_options(*app, *options);
   app->add_option("--scan", options->scan, kScanHelp)->type_name("K");
   const auto factor = number_in(1e-3, 65536.0);
   app->add_option("--rows", options->reconstruct.rows, "R_row with which .curl files are decoded")

@@ -11,25 +11,14 @@
 
 #include "base/parallel.hpp"
 #include "base/try.hpp"
+#include "cloud/kd_points.hpp"
 
 namespace curlidar {
 namespace {
 
-/// Returns of a cloud times a power of two, in the shape nanoflann asks for.
-struct ReturnSet {
-  std::vector<Vec3> points;
+/// Returns of a cloud times a power of two.
+struct ReturnSet : KdPoints {
   std::vector<std::size_t> slots;  // ascending
-
-  // nanoflann prescribes these names.
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    const Vec3& p = points[i];
-    return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
-  }
-  template <class BoundingBox>
-  bool kdtree_get_bbox(BoundingBox&) const {
-    return false;
-  }
 };
 
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, ReturnSet>,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/parallel.hpp"
+#include "cloud/kd_points.hpp"
 
 namespace curlidar::registration {
 namespace {
@@ -18,23 +19,8 @@ constexpr double kMostRound = 0.1;
 constexpr std::size_t kPointsPerLeaf = 10;
 constexpr std::size_t kPlanesPerTask = 512;
 
-struct PointSet {
-  std::vector<Vec3> points;
-
-  // nanoflann prescribes these names.
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t axis) const {
-    const Vec3& p = points[i];
-    return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
-  }
-  template <class BoundingBox>
-  bool kdtree_get_bbox(BoundingBox&) const {
-    return false;
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointSet>,
-                                                 PointSet, 3, std::uint32_t>;
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, KdPoints>,
+                                                 KdPoints, 3, std::uint32_t>;
 
 /// The nearest point within a distance: the bound cuts most of the tree away at once.
 class NearestWithin {
@@ -83,7 +69,7 @@ Vec3 plane_normal(std::span<const Vec3> points) {
 }  // namespace
 
 struct TargetSurface::Index {
-  PointSet set;
+  KdPoints set;
   std::unique_ptr<Tree> tree;  // refers to set
   std::vector<Vec3> normals;
   std::vector<std::uint8_t> known;  // whether a normal was looked for
