@@ -141,19 +141,21 @@ class LeafTrials {
     const double to_cell = static_cast<double>(cells_) / (2.0 * c_.half);
     const double half = c_.half;
     near_.assign(std::size_t{cells_} * cells_, 0.0);
+    left_.assign(near_.size(), 0.0);
     weight_.assign(near_.size(), 0.0);
     double total = 0;
     for (std::size_t i = cube_.begin; i < cube_.end; ++i) {
       const double du = us[i] - u0, dv = vs[i] - v0;
       double height = h0 + a * du + b * dv;
       if (bent) height += bend * (curve[0] * du * du + curve[1] * du * dv + curve[2] * dv * dv);
-      const double off = std::min(std::abs(hs[i] - height) * upright, weighing_.drop);
+      const double off = std::min(std::abs(hs[i] - height) * upright, cube_.samples->drop[i]);
       const double w = cube_.samples->weight[i];
       total += w * off;
       if (cells_ > 1) {
         const auto cell = static_cast<std::size_t>((du + half) * to_cell) * cells_ +
                           static_cast<std::size_t>((dv + half) * to_cell);
         near_[cell] += w * off;
+        left_[cell] += cube_.samples->left[i];
         weight_[cell] += w;
       }
     }
@@ -189,7 +191,7 @@ class LeafTrials {
     double total = 0;
     for (std::size_t k = 0; k < footprint.size(); ++k) {
       if (footprint[k] == 0) {
-        total += weighing_.drop * weight_[k];
+        total += left_[k];
       } else {
         total += near_[k] + (weight_[k] > 0 ? 0 : bare);
       }
@@ -222,7 +224,7 @@ class LeafTrials {
         continue;
       }
       const TileContexts contexts = walk.contexts(k);
-      const double gain = weight_[k] > 0 ? weighing_.drop * weight_[k] - near_[k] : -bare;
+      const double gain = weight_[k] > 0 ? left_[k] - near_[k] : -bare;
       const double price = weighing_.lambda / 256 *
                            (static_cast<double>(cost.of(contexts, true)) -
                             static_cast<double>(cost.of(contexts, false)));
@@ -241,7 +243,7 @@ class LeafTrials {
   std::int32_t intensity_ = 0;
   std::array<bool, 3> known_{};
   std::array<FitMoments, 3> moments_;
-  std::vector<double> near_, weight_;
+  std::vector<double> near_, left_, weight_;  ///< of the samples of each cell
   TriedLeaf best_;
 };
 

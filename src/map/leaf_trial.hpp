@@ -46,7 +46,8 @@ struct TileWeighing {
   double drop = 0;    ///< a sample's distance where it is left out
   double near = 0;    ///< fits doubt what is farther away than this
   double bare =
-      0;  ///< what a square tick of surface without samples counts as, in ticks of distance
+      0;  ///< of surface without samples: what a square tick counts as, in ticks of distance
+  double least = 0;  ///< J that samples must be worth to be looked at
 };
 
 /// A leaf and what it costs.

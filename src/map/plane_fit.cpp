@@ -55,7 +55,7 @@ FitMoments robust_moments(const CubeSamples& cube, std::uint32_t axis, double ne
     m = {};
     for (std::size_t i = cube.begin; i < cube.end; ++i) {
       const double u = (us[i] - u0) * scale, v = (vs[i] - v0) * scale, h = hs[i] - h0;
-      double w = cube.samples->weight[i];
+      double w = cube.samples->left[i];
       if (pass > 0) {
         const double off = std::abs(h - plane.height - plane.rise_u * u - plane.rise_v * v);
         if (off > near) w *= near / off;
@@ -87,7 +87,7 @@ FittedCurve robust_curve(const CubeSamples& cube, std::uint32_t axis, double nea
     for (std::size_t i = cube.begin; i < cube.end; ++i) {
       const double u = (us[i] - u0) * scale, v = (vs[i] - v0) * scale, h = hs[i] - h0;
       const std::array<double, 6> f = {1, u, v, u * u, u * v, v * v};
-      double w = cube.samples->weight[i];
+      double w = cube.samples->left[i];
       if (pass > 0) {
         double off = h;
         for (std::size_t k = 0; k < 6; ++k) off -= found[k] * f[k];
@@ -110,7 +110,7 @@ std::array<std::uint32_t, 3> axes_by_spread(const CubeSamples& cube) {
   for (std::size_t k = 0; k < 3; ++k) {
     double w = 0, sum = 0, squares = 0;
     for (std::size_t i = cube.begin; i < cube.end; ++i) {
-      const double h = cube.samples->at[k][i] - cube.centre[k], weight = cube.samples->weight[i];
+      const double h = cube.samples->at[k][i] - cube.centre[k], weight = cube.samples->left[i];
       w += weight;
       sum += weight * h;
       squares += weight * h * h;

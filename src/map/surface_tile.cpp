@@ -1,94 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map/surface_tile.hpp"
 
-#include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "base/try.hpp"
-#include "entropy/range_coder.hpp"
+#include "map/tile_decoder.hpp"
 #include "map/tile_encoder.hpp"
-#include "map/tile_header.hpp"
 #include "map/tile_lod.hpp"
-#include "map/tile_tree.hpp"
 
 namespace curlidar {
-namespace {
-
-using namespace tile;
-
-double metres(std::int32_t ticks) {
-  return static_cast<double>(ticks) / kTicks;
-}
-
-MapLeaf map_leaf(const TileState& state, const PlacedLeaf& placed) {
-  const TileLayout& layout = state.layout();
-  const Ticks3 centre = centre_of(layout, placed.cube);
-  const TilePlane& plane = state.planes()[placed.plane];
-  MapLeaf leaf;
-  leaf.centre = {metres(centre[0]), metres(centre[1]), metres(centre[2])};
-  leaf.size_m = metres(layout.edge(placed.cube.level));
-  leaf.axis = static_cast<std::uint8_t>(plane.axis);
-  leaf.level = static_cast<std::uint8_t>(placed.cube.level);
-  leaf.height_m = metres(plane.at(centre[u_axis(plane.axis)], centre[v_axis(plane.axis)]));
-  for (std::size_t k = 0; k < 2; ++k) leaf.slope[k] = plane.slope[k] / 65536.0;
-  for (std::size_t k = 0; k < 3; ++k) leaf.curve[k] = placed.curve[k] / 65536.0;
-  leaf.cells = layout.cells(placed.cube.level);
-  leaf.first_cell = placed.first_cell;
-  if (layout.intensity) {
-    leaf.intensity = static_cast<float>(placed.intensity) * layout.intensity_step;
-  }
-  return leaf;
-}
-
-MapTile map_tile(const TileState& state) {
-  MapTile tile;
-  tile.side_m = metres(state.layout().edge(0)) * state.layout().side_roots;
-  tile.leaves.reserve(state.leaves().size());
-  for (const PlacedLeaf& placed : state.leaves()) tile.leaves.push_back(map_leaf(state, placed));
-  tile.footprint = state.cells();
-  return tile;
-}
-
-}  // namespace
 
 Result<std::vector<std::byte>> encode_surface_tile(const std::vector<MapSample>& samples,
                                                    const SurfaceSettings& settings, double side_m) {
-  CURLIDAR_TRY_ASSIGN(tile, encode_tile(samples, settings, side_m));
-  return std::move(tile.bytes);
+  return tile::encode_tile(samples, settings, side_m);
+}
+
+Result<LongerTile> append_surface_tile(ByteSpan old, const std::vector<MapSample>& samples,
+                                       const SurfaceSettings& settings, const TileLimits& limits) {
+  CURLIDAR_TRY_ASSIGN(decoded, tile::decode_tile(old, limits, true));
+  return tile::encode_longer(std::move(decoded), samples, settings);
 }
 
 Result<MapTile> decode_surface_tile(ByteSpan bytes, const TileLimits& limits,
                                     std::uint32_t max_level) {
-  ByteReader in(bytes);
-  CURLIDAR_TRY_ASSIGN(layout, read_header(in));
-  TileState state(layout);
-  TileModels models;
-  RangeDecoder decoder(in.take(in.remaining()));
-  TileSink<RangeDecoder> sink(decoder, models);
-  bool full = false;
-  const auto go_on = [&] {
-    full = state.leaves().size() >= limits.max_leaves ||
-           std::max(state.cells().size(), state.fine_cubes()) > limits.max_cells;
-    return !full && !decoder.exhausted();
-  };
-  const bool whole = for_each_root(layout, [&](const TileCube& cube) {
-    return !decoder.exhausted() && code_root(sink, state, state.context(cube), nullptr, -1, go_on);
-  });
-  if (full) {
-    return Error{
-        ErrorCode::limit_exceeded,
-        fmt::format("a tile has more than {} leaves or {} cells: raise the limits if it can "
-                    "be trusted",
-                    limits.max_leaves, limits.max_cells)};
+  CURLIDAR_TRY_ASSIGN(decoded, tile::decode_tile(bytes, limits, false));
+  if (max_level < decoded.layout.levels) {
+    return tile::coarser(decoded.tile, decoded.layout, max_level);
   }
-  if (!whole || decoder.exhausted() || !decoder.finished()) {
-    return Error{ErrorCode::corrupt, "the bits of a tile do not end where its surface does"};
-  }
-  MapTile tile = map_tile(state);
-  if (max_level < layout.levels) return coarser(tile, layout, max_level);
-  return tile;
+  return std::move(decoded.tile);
 }
 
 }  // namespace curlidar

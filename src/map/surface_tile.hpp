@@ -2,6 +2,7 @@
 // One tile of a surface map as bytes (docs/format/curl-surface-tile-1.md).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -23,6 +24,17 @@ Status validate(const SurfaceSettings& settings, double side_m);
 /// depend on the samples but not on their order. One thread; some microseconds a sample.
 Result<std::vector<std::byte>> encode_surface_tile(const std::vector<MapSample>& samples,
                                                    const SurfaceSettings& settings, double side_m);
+
+/// A tile that more was seen of.
+struct LongerTile {
+  std::vector<std::byte> bytes;  ///< none: nothing new is worth telling
+  std::size_t explained = 0;     ///< samples near the old surface
+};
+/// The tile `old` and, in a pass after it, what samples tell that it does not: no leaf of it
+/// changes. Its sizes stay, `settings` weigh. Errors: those of decoding and encoding.
+Result<LongerTile> append_surface_tile(ByteSpan old, const std::vector<MapSample>& samples,
+                                       const SurfaceSettings& settings,
+                                       const TileLimits& limits = {});
 
 /// The leaves of a tile, `key` and `origin` left alone. With `max_level`, leaves below that level
 /// are told by one plane for each cube of that level which has any: fitted to their cells, over

@@ -3,41 +3,22 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "curlidar/map_settings.hpp"
 #include "curlidar/result.hpp"
-#include "map/tile_tree.hpp"
+#include "map/surface_tile.hpp"
+#include "map/tile_decoder.hpp"
 
 namespace curlidar::tile {
 
-/// What was chosen for a root: `nodes[node]`, nothing for -1.
-struct RootTree {
-  std::vector<TileNode> nodes;
-  std::int32_t node = -1;
-};
-
-struct EncodedTile {
-  std::vector<std::byte> bytes;
-  TileLayout layout;
-  std::vector<RootTree> roots;  ///< all, in their order, if they were asked for
-};
-
 /// Errors as encode_surface_tile's.
-Result<EncodedTile> encode_tile(const std::vector<MapSample>& samples,
-                                const SurfaceSettings& settings, double side_m,
-                                bool keep_roots = false);
+Result<std::vector<std::byte>> encode_tile(const std::vector<MapSample>& samples,
+                                           const SurfaceSettings& settings, double side_m);
 
-/// Codes trees that were chosen before.
-template <class Sink>
-void code_trees(Sink& sink, const TileLayout& layout, const std::vector<RootTree>& roots) {
-  TileState state(layout);
-  std::size_t next = 0;
-  for_each_root(layout, [&](const TileCube& cube) {
-    const RootTree& root = roots[next++];
-    return code_root(sink, state, state.context(cube), &root.nodes, root.node, [] { return true; });
-  });
-}
+/// A decoded tile, with its trees, and a pass more. Of one that has all passes it may have, the
+/// last is made anew.
+Result<LongerTile> encode_longer(DecodedTile old, const std::vector<MapSample>& samples,
+                                 const SurfaceSettings& settings);
 
 }  // namespace curlidar::tile

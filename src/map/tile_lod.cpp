@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "map/plane_fit.hpp"
@@ -49,15 +50,15 @@ void add_cells(const MapTile& tile, const MapLeaf& leaf, std::vector<CellMiddle>
   }
 }
 
-/// One leaf for the leaves [begin, end), which lie in one cube of the level.
-void merge(const MapTile& tile, std::size_t begin, std::size_t end, const TileLayout& layout,
+/// One leaf for leaves that lie in one cube of the level.
+void merge(const MapTile& tile, std::span<const std::size_t> leaves, const TileLayout& layout,
            std::uint32_t level, MapTile& out) {
   const double edge = static_cast<double>(layout.edge(level)) / kTicks;
-  const Coordinates corner = corner_of(tile.leaves[begin].centre, edge);
+  const Coordinates corner = corner_of(tile.leaves[leaves.front()].centre, edge);
   std::vector<CellMiddle> cells;
   std::array<double, 3> area{};
   double lit = 0, lit_area = 0;
-  for (std::size_t i = begin; i < end; ++i) {
+  for (const std::size_t i : leaves) {
     const MapLeaf& leaf = tile.leaves[i];
     const std::size_t before = cells.size();
     add_cells(tile, leaf, cells);
@@ -117,27 +118,26 @@ MapTile coarser(const MapTile& tile, const TileLayout& layout, std::uint32_t max
   out.origin = tile.origin;
   out.side_m = tile.side_m;
   const double edge = static_cast<double>(layout.edge(max_level)) / kTicks;
-  for (std::size_t i = 0; i < tile.leaves.size();) {
+  std::vector<std::size_t> below;
+  for (std::size_t i = 0; i < tile.leaves.size(); ++i) {
     const MapLeaf& leaf = tile.leaves[i];
-    if (leaf.level <= max_level) {
-      out.leaves.push_back(leaf);
-      out.leaves.back().first_cell = out.footprint.size();
-      const auto cells = tile.footprint.begin() + static_cast<std::ptrdiff_t>(leaf.first_cell);
-      out.footprint.insert(
-          out.footprint.end(), cells,
-          cells + static_cast<std::ptrdiff_t>(std::size_t{leaf.cells} * leaf.cells));
-      ++i;
+    if (leaf.level > max_level) {
+      below.push_back(i);
       continue;
     }
-    // Leaves of one cube follow each other.
-    const Coordinates corner = corner_of(leaf.centre, edge);
-    std::size_t end = i + 1;
-    while (end < tile.leaves.size() && tile.leaves[end].level > max_level &&
-           corner_of(tile.leaves[end].centre, edge) == corner) {
-      ++end;
-    }
-    merge(tile, i, end, layout, max_level, out);
-    i = end;
+    out.leaves.push_back(leaf);
+    out.leaves.back().first_cell = out.footprint.size();
+    const auto cells = tile.footprint.begin() + static_cast<std::ptrdiff_t>(leaf.first_cell);
+    out.footprint.insert(out.footprint.end(), cells,
+                         cells + static_cast<std::ptrdiff_t>(std::size_t{leaf.cells} * leaf.cells));
+  }
+  const auto corner = [&](std::size_t i) { return corner_of(tile.leaves[i].centre, edge); };
+  // Later passes put leaves into cubes of earlier ones.
+  std::stable_sort(below.begin(), below.end(),
+                   [&](std::size_t a, std::size_t b) { return corner(a) < corner(b); });
+  for (std::size_t begin = 0, end = 0; begin < below.size(); begin = end) {
+    while (end < below.size() && corner(below[end]) == corner(below[begin])) ++end;
+    merge(tile, std::span(below).subspan(begin, end - begin), layout, max_level, out);
   }
   return out;
 }

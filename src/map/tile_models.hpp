@@ -2,6 +2,7 @@
 // The adaptive models of a tile's syntax: which decision of which element learns where.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -99,6 +100,13 @@ struct TileModels {
 
   /// As every tile starts: without any knowledge.
   TileModels() : models(kTileModels), weights(kTileMixers) {}
+  /// As another pass starts: what is worth splitting has to be learnt anew.
+  void begin_pass() {
+    static_assert(kOccupied < kNewPlane && kSplitCube < kNewPlane && kNewPlane == 2);
+    const TileModelRange& rest = kTileModelRanges[kNewPlane];
+    std::fill_n(models.begin(), rest.begin[0], BitModel());
+    std::fill_n(weights.begin(), rest.mixer, MixWeights<kTileInputs>());
+  }
 };
 
 inline constexpr std::int32_t kTileMixRate = 10;

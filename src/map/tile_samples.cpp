@@ -66,8 +66,13 @@ Result<SortedSamples> sort_samples(const std::vector<MapSample>& samples, TileLa
     placed.push_back(one);
   }
   SortedSamples out;
-  layout.first_row = placed.empty() ? 0 : lowest;
-  layout.rows = placed.empty() ? 0 : static_cast<std::uint32_t>(highest - lowest + 1);
+  if (layout.rows > 0) {
+    lowest = std::min(lowest, layout.first_row);
+    highest = std::max(highest, layout.first_row + static_cast<std::int32_t>(layout.rows) - 1);
+  }
+  const bool any = highest >= lowest;
+  layout.first_row = any ? lowest : 0;
+  layout.rows = any ? static_cast<std::uint32_t>(highest - lowest + 1) : 0;
   if (layout.rows > kMaxRoots / (layout.side_roots * layout.side_roots)) {
     return Error{ErrorCode::limit_exceeded,
                  fmt::format("the samples of a tile are {} roots high; at most {} are possible",
@@ -103,6 +108,13 @@ Result<SortedSamples> sort_samples(const std::vector<MapSample>& samples, TileLa
     out.samples.fine.push_back(one.fine);
   }
   return out;
+}
+
+void weigh_left(TileSamples& samples) {
+  samples.left.clear();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples.left.push_back(samples.weight[i] * samples.drop[i]);
+  }
 }
 
 void limit_weights(SortedSamples& sorted, double most) {

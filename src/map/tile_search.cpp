@@ -13,9 +13,9 @@ constexpr double kLeastSplit = 6;
 
 }  // namespace
 
-double TileSearch::weight_of(std::size_t begin, std::size_t end) const {
+double TileSearch::cost_left(std::size_t begin, std::size_t end) const {
   double sum = 0;
-  for (std::size_t i = begin; i < end; ++i) sum += samples_.weight[i];
+  for (std::size_t i = begin; i < end; ++i) sum += samples_.left[i];
   return sum;
 }
 
@@ -35,10 +35,11 @@ double TileSearch::split_cost(const CubeContext& c, bool split) const {
 
 std::int32_t TileSearch::root(const CubeContext& c, const RootSamples& root) {
   nodes_.clear();
+  const double left = cost_left(root.begin, root.end);
+  if (left < weighing_.least) return -1;
   const TileState::Mark mark = state_.mark();
   const Found found = search(c, root.begin, root.end);
-  const double without =
-      weighing_.drop * weight_of(root.begin, root.end) + occupied_cost(c, 0, false);
+  const double without = left + occupied_cost(c, 0, false);
   if (found.node >= 0 && found.cost + occupied_cost(c, 0, true) < without) return found.node;
   state_.forget(c.cube, mark);
   return -1;
@@ -74,10 +75,10 @@ TileSearch::Found TileSearch::split(const CubeContext& c, std::size_t begin, std
     std::size_t last = begin;
     while (last < end && (samples_.fine[last] >> shift & 7) == k) ++last;
     const CubeContext child = state_.context(c.cube.child(k));
-    const double out =
-        weighing_.drop * weight_of(begin, last) + occupied_cost(child, siblings, false);
+    const double left = cost_left(begin, last);
+    const double out = left + occupied_cost(child, siblings, false);
     node.children[k] = -1;
-    if (last > begin) {
+    if (last > begin && left >= weighing_.least) {
       const TileState::Mark mark = state_.mark();
       const std::size_t nodes = nodes_.size();
       const Found found = search(child, begin, last);

@@ -29,7 +29,8 @@ class TileSearch {
   };
   Found search(const CubeContext& c, std::size_t begin, std::size_t end);
   Found split(const CubeContext& c, std::size_t begin, std::size_t end, double bound);
-  double weight_of(std::size_t begin, std::size_t end) const;
+  /// Of samples that are left out.
+  double cost_left(std::size_t begin, std::size_t end) const;
   double occupied_cost(const CubeContext& c, std::uint32_t siblings, bool occupied) const;
   double split_cost(const CubeContext& c, bool split) const;
 

@@ -16,54 +16,14 @@ struct Vote {
 
 }  // namespace
 
-TileState::TileState(const TileLayout& layout) : layout_(layout) {
-  const std::uint32_t fine = layout.fine(0);
-  fine_side_ = static_cast<std::int32_t>(layout.side_roots * fine);
-  fine_height_ = static_cast<std::int32_t>(layout.rows * fine);
-  block_of_.assign(std::size_t{layout.side_roots} * layout.side_roots * layout.rows, kUnknown);
-}
-
-std::int32_t TileState::fine_at(std::int32_t x, std::int32_t y, std::int32_t z) const {
-  if (x < 0 || y < 0 || z < 0 || x >= fine_side_ || y >= fine_side_ || z >= fine_height_) {
-    return kUnknown;
-  }
-  const auto ux = static_cast<std::uint32_t>(x), uy = static_cast<std::uint32_t>(y),
-             uz = static_cast<std::uint32_t>(z);
-  const std::uint32_t log2 = layout_.levels, mask = (1u << log2) - 1;
-  const std::size_t root =
-      (std::size_t{ux >> log2} * layout_.side_roots + (uy >> log2)) * layout_.rows + (uz >> log2);
-  const std::int32_t block = block_of_[root];
-  if (block < 0) return block;
-  const std::size_t inside = ((ux & mask) << log2 | (uy & mask)) << log2 | (uz & mask);
-  return blocks_[(static_cast<std::size_t>(block) << 3 * log2) + inside];
-}
-
-void TileState::fill(const TileCube& cube, std::int32_t value) {
-  const std::uint32_t log2 = layout_.levels, f = layout_.fine(cube.level), mask = (1u << log2) - 1;
-  const std::uint32_t x = cube.at[0] * f, y = cube.at[1] * f, z = cube.at[2] * f;
-  const std::size_t root =
-      (std::size_t{x >> log2} * layout_.side_roots + (y >> log2)) * layout_.rows + (z >> log2);
-  if (block_of_[root] < 0) {
-    if (cube.level == 0 && value < 0) {
-      block_of_[root] = value;
-      return;
-    }
-    const std::int32_t before = block_of_[root];
-    block_of_[root] = static_cast<std::int32_t>(blocks_.size() >> 3 * log2);
-    blocks_.resize(blocks_.size() + (std::size_t{1} << 3 * log2), before);
-  }
-  std::int32_t* block = blocks_.data() + (static_cast<std::size_t>(block_of_[root]) << 3 * log2);
-  for (std::uint32_t i = 0; i < f; ++i) {
-    for (std::uint32_t j = 0; j < f; ++j) {
-      std::int32_t* row =
-          block + ((((x & mask) + i) << log2 | ((y & mask) + j)) << log2 | (z & mask));
-      std::fill(row, row + f, value);
-    }
-  }
+void TileState::begin_pass() {
+  before_.lay_on(now_);
+  now_ = FineCubes(layout_);
+  later_ = true;
 }
 
 void TileState::forget(const TileCube& cube, const Mark& mark) {
-  fill(cube, kUnknown);
+  now_.fill(cube, kUnknown);
   leaves_.resize(mark.leaves);
   planes_.resize(mark.planes);
   cells_.resize(mark.cells);
@@ -124,7 +84,10 @@ void TileState::gather_planes(CubeContext& c, bool touching_any) const {
   for (std::int32_t x = -1; touching_any && x <= f; ++x) {
     for (std::int32_t y = -1; y <= f; ++y) {
       const bool side = x < 0 || x == f || y < 0 || y == f;
-      for (std::int32_t z = -1; z <= f; z += side ? 1 : f + 1) ask(x0 + x, y0 + y, z0 + z);
+      // What was coded before may lie in the cube itself.
+      for (std::int32_t z = -1; z <= f; z += side || later_ ? 1 : f + 1) {
+        ask(x0 + x, y0 + y, z0 + z);
+      }
     }
   }
   if (votes.empty()) {
@@ -160,8 +123,9 @@ bool TileState::alone(const TileCube& root) const {
       for (std::int64_t dz = -1; dz <= 1; ++dz) {
         const std::int64_t x = root.at[0] + dx, y = root.at[1] + dy, z = root.at[2] + dz;
         if (x < 0 || y < 0 || z < 0 || x >= edge || y >= edge || z >= layout_.rows) continue;
-        if (block_of_[static_cast<std::size_t>((x * edge + y) * layout_.rows + z)] >= 0)
-          return false;
+        const auto ux = static_cast<std::uint32_t>(x), uy = static_cast<std::uint32_t>(y),
+                   uz = static_cast<std::uint32_t>(z);
+        if (now_.may_hold(ux, uy, uz) || (later_ && before_.may_hold(ux, uy, uz))) return false;
       }
     }
   }
@@ -240,7 +204,12 @@ std::vector<std::uint8_t> TileState::open_cells(const CubeContext& c,
     for (std::uint32_t j = 0; j < m; ++j) {
       const std::int64_t height = plane.at(u0 + static_cast<std::int32_t>(i) * cell,
                                            v0 + static_cast<std::int32_t>(j) * cell);
-      open[std::size_t{i} * m + j] = std::abs(height - middle) <= reach ? 1 : 0;
+      bool near = std::abs(height - middle) <= reach;
+      if (near && later_) {
+        near = cell_at(plane.axis, cell_middle(c, plane, static_cast<std::int32_t>(i),
+                                               static_cast<std::int32_t>(j))) != 1;
+      }
+      open[std::size_t{i} * m + j] = near ? 1 : 0;
     }
   }
   return open;
@@ -265,21 +234,29 @@ std::uint8_t TileState::cell_at(std::uint32_t axis, const Ticks3& p) const {
   return cells_[leaf.first_cell + std::size_t{place(u_axis(axis))} * m + place(v_axis(axis))];
 }
 
+Ticks3 TileState::cell_middle(const CubeContext& c, const TilePlane& plane, std::int32_t i,
+                              std::int32_t j) const {
+  const std::int32_t cell = 2 * c.half / static_cast<std::int32_t>(layout_.cells(c.cube.level));
+  const std::uint32_t ua = u_axis(plane.axis), va = v_axis(plane.axis);
+  Ticks3 p{};
+  p[ua] = c.centre[ua] - c.half + i * cell + cell / 2;
+  p[va] = c.centre[va] - c.half + j * cell + cell / 2;
+  p[plane.axis] = std::clamp(plane.at(p[ua], p[va]), c.centre[plane.axis] - c.half,
+                             c.centre[plane.axis] + c.half - 1);
+  return p;
+}
+
 std::vector<std::uint8_t> TileState::surroundings(const CubeContext& c,
                                                   const TilePlane& plane) const {
   const auto m = static_cast<std::int32_t>(layout_.cells(c.cube.level));
-  const std::int32_t cell = 2 * c.half / m;
   std::vector<std::uint8_t> around(static_cast<std::size_t>((m + 2) * (m + 2)), 0);
-  const std::uint32_t ua = u_axis(plane.axis), va = v_axis(plane.axis);
   for (std::int32_t i = -1; i <= m; ++i) {
     const bool side = i < 0 || i == m;
-    for (std::int32_t j = -1; j <= m; j += side ? 1 : m + 1) {
-      Ticks3 p{};
-      p[ua] = c.centre[ua] - c.half + i * cell + cell / 2;
-      p[va] = c.centre[va] - c.half + j * cell + cell / 2;
-      p[plane.axis] = std::clamp(plane.at(p[ua], p[va]), c.centre[plane.axis] - c.half,
-                                 c.centre[plane.axis] + c.half - 1);
-      around[static_cast<std::size_t>((i + 1) * (m + 2) + j + 1)] = cell_at(plane.axis, p);
+    for (std::int32_t j = -1; j <= m; j += side || later_ ? 1 : m + 1) {
+      const std::uint8_t state = cell_at(plane.axis, cell_middle(c, plane, i, j));
+      const bool inside = !side && j >= 0 && j < m;
+      around[static_cast<std::size_t>((i + 1) * (m + 2) + j + 1)] =
+          inside && state != 1 ? 0 : state;
     }
   }
   return around;
@@ -294,7 +271,7 @@ void TileState::place(const CubeContext& c, const TileLeafCode& leaf) {
     planes_.push_back(plane_of(c, leaf));
   }
   cells_.insert(cells_.end(), leaf.footprint.begin(), leaf.footprint.end());
-  fill(c.cube, static_cast<std::int32_t>(leaves_.size()));
+  now_.fill(c.cube, static_cast<std::int32_t>(leaves_.size()));
   leaves_.push_back(placed);
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "map/fine_cubes.hpp"
 #include "map/tile_geometry.hpp"
 
 namespace curlidar::tile {
@@ -36,9 +37,6 @@ struct PlacedLeaf {
   std::size_t first_cell = 0;
 };
 
-/// What the finest cubes hold beside places of leaves.
-inline constexpr std::int32_t kUnknown = -1, kEmpty = -2;
-
 /// What tells about a cube before it is coded.
 struct CubeContext {
   TileCube cube;
@@ -59,7 +57,10 @@ struct CubeContext {
 
 class TileState {
  public:
-  explicit TileState(const TileLayout& layout);
+  explicit TileState(const TileLayout& layout) : layout_(layout), now_(layout), before_(layout) {}
+
+  /// Begins another walk over all roots. What was coded before stays, and is known from the start.
+  void begin_pass();
 
   const TileLayout& layout() const { return layout_; }
   const std::vector<PlacedLeaf>& leaves() const { return leaves_; }
@@ -71,17 +72,19 @@ class TileState {
   TilePlane plane_of(const CubeContext& c, const TileLeafCode& leaf) const;
   /// Its curvature, Q16 a metre.
   std::array<std::int32_t, 3> curve_of(const CubeContext& c, const TileLeafCode& leaf) const;
-  /// Which cells of a leaf on such a plane come near its cube, cells x cells.
+  /// Which cells of a leaf on such a plane come near its cube, cells x cells; in later passes
+  /// without those where an earlier leaf of the same axis has surface.
   std::vector<std::uint8_t> open_cells(const CubeContext& c, const TilePlane& plane) const;
 
   /// States of the cells around a leaf, (cells + 2)^2 with the leaf's own in the middle as 0:
-  /// 0 nothing there, 1 surface, 2 not known yet, 3 another axis' surface.
+  /// 0 nothing there, 1 surface, 2 not known yet, 3 another axis' surface. In later passes cells in
+  /// the middle are 1 where an earlier leaf has surface.
   std::vector<std::uint8_t> surroundings(const CubeContext& c, const TilePlane& plane) const;
 
   /// Takes a leaf as coded.
   void place(const CubeContext& c, const TileLeafCode& leaf);
   /// Takes a cube as coded and empty, or anything below it as not coded.
-  void set_empty(const TileCube& cube) { fill(cube, kEmpty); }
+  void set_empty(const TileCube& cube) { now_.fill(cube, kEmpty); }
 
   /// Where an encoder can come back to.
   struct Mark {
@@ -92,22 +95,30 @@ class TileState {
   void forget(const TileCube& cube, const Mark& mark);
 
   /// Memory for finest cubes taken so far, in cubes.
-  std::size_t fine_cubes() const { return blocks_.size(); }
+  std::size_t fine_cubes() const { return now_.size() + before_.size(); }
 
  private:
-  std::int32_t fine_at(std::int32_t x, std::int32_t y, std::int32_t z) const;
-  void fill(const TileCube& cube, std::int32_t value);
+  /// What this pass knows, or else those before it.
+  std::int32_t fine_at(std::int32_t x, std::int32_t y, std::int32_t z) const {
+    const std::int32_t now = now_.at(x, y, z);
+    if (now >= 0 || !later_) return now;
+    const std::int32_t before = before_.at(x, y, z);
+    return before >= 0 ? before : now;
+  }
   std::uint32_t crossing_of(const CubeContext& c, const TilePlane& plane) const;
   bool any_in(const TileCube& cube, int dx, int dy, int dz) const;
   /// Whether neither a root nor those around it hold anything: what is known at once.
   bool alone(const TileCube& root) const;
   void gather_planes(CubeContext& c, bool touching_any) const;
   std::uint8_t cell_at(std::uint32_t axis, const Ticks3& p) const;
+  /// The middle of a cell of a leaf on a plane, limited to the cube along its axis; i and j from
+  /// -1.
+  Ticks3 cell_middle(const CubeContext& c, const TilePlane& plane, std::int32_t i,
+                     std::int32_t j) const;
 
   TileLayout layout_;
-  std::int32_t fine_side_ = 0, fine_height_ = 0;  ///< of the tile, in finest cubes
-  std::vector<std::int32_t> block_of_;            ///< of roots; kUnknown and kEmpty without a block
-  std::vector<std::int32_t> blocks_;
+  bool later_ = false;      ///< than the first pass
+  FineCubes now_, before_;  ///< of this pass, of all before it
   std::vector<PlacedLeaf> leaves_;
   std::vector<TilePlane> planes_;
   std::vector<std::uint8_t> cells_;

@@ -10,7 +10,6 @@
 #include "base/parallel.hpp"
 #include "base/try.hpp"
 #include "map/surface_tile.hpp"
-#include "mapfile/appended.hpp"
 #include "mapfile/map_header.hpp"
 
 namespace curlidar {
@@ -49,30 +48,43 @@ class TileMaker {
     if (samples.empty() && !source.in_old) return ready;
     if (samples.empty()) return keep(*source.in_old, {});
     if (source.in_old) {
-      const auto tile = old_->read_tile(*source.in_old);
-      if (tile) {
-        ready.samples = samples.size();
-        AppendedSamples appended = appended_samples(*tile, samples, header_.surface);
-        ready.explained = appended.explained;
-        if (appended.samples.empty()) return keep(*source.in_old, std::move(ready));
-        samples = std::move(appended.samples);
-      } else {
-        ready.damaged =
-            fmt::format("{}; it was made anew from the new scans alone", tile.error().message);
-      }
+      auto longer = made_longer(key, *source.in_old, samples);
+      if (longer || longer.error().code != ErrorCode::corrupt) return longer;
+      ready.damaged =
+          fmt::format("{}; it was made anew from the new scans alone", longer.error().message);
     }
-    ready.samples = std::max(ready.samples, samples.size());
+    ready.samples = samples.size();
     CURLIDAR_TRY_ASSIGN(
         bytes, encode_surface_tile(std::move(samples), header_.surface, header_.tile_side_m));
-    CURLIDAR_TRY_ASSIGN(tile, decode_surface_tile(bytes));
-    if (tile.leaves.empty()) return ready;
-    tile.key = key;
-    ready.part = write_tile_part(key, bytes);
-    ready.summary = write_tile_summary(tile, header_.tile_side_m);
+    CURLIDAR_TRY(finish(key, bytes, ready));
     return ready;
   }
 
  private:
+  /// An old tile with what is new in it.
+  Result<ReadyTile> made_longer(TileKey key, std::size_t old,
+                                const std::vector<MapSample>& samples) const {
+    CURLIDAR_TRY_ASSIGN(part, old_->read_part(old));
+    CURLIDAR_TRY_ASSIGN(parts, read_tile_part(part, "a tile"));
+    CURLIDAR_TRY_ASSIGN(longer, append_surface_tile(parts.tile, samples, header_.surface));
+    ReadyTile ready;
+    ready.samples = samples.size();
+    ready.explained = longer.explained;
+    if (longer.bytes.empty()) return keep(old, std::move(ready));
+    CURLIDAR_TRY(finish(key, longer.bytes, ready));
+    return ready;
+  }
+
+  /// Part and summary; none for a tile without leaves.
+  Status finish(TileKey key, ByteSpan bytes, ReadyTile& ready) const {
+    CURLIDAR_TRY_ASSIGN(tile, decode_surface_tile(bytes));
+    if (tile.leaves.empty()) return {};
+    tile.key = key;
+    ready.part = write_tile_part(key, bytes);
+    ready.summary = write_tile_summary(tile, header_.tile_side_m);
+    return {};
+  }
+
   /// The old tile as it is.
   Result<ReadyTile> keep(std::size_t tile, ReadyTile ready) const {
     ready.kept = true;

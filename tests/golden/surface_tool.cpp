@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "golden/surface_twin.hpp"
@@ -18,12 +19,19 @@ void write(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
+/// `more`: samples of passes after the first.
 bool make(const std::string& folder, const std::string& corpus, const std::string& name,
-          std::vector<MapSample> samples, const SurfaceSettings& settings) {
+          std::vector<MapSample> samples, const SurfaceSettings& settings,
+          const std::vector<std::vector<MapSample>>& more = {}) {
   // Fewer samples: the second decoder is slow.
   for (MapSample& sample : samples) sample.intensity = static_cast<float>(sample.position.x) / 16;
-  const auto bytes = encode_surface_tile(samples, settings, 16);
+  auto bytes = encode_surface_tile(samples, settings, 16);
   if (!bytes) return false;
+  for (const std::vector<MapSample>& added : more) {
+    auto longer = append_surface_tile(*bytes, added, settings);
+    if (!longer || longer->bytes.empty()) return false;
+    *bytes = std::move(longer->bytes);
+  }
   const auto tile = decode_surface_tile(*bytes);
   if (!tile) return false;
   const std::string text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
@@ -54,6 +62,8 @@ int main(int argc, char** argv) {
                     make(argv[1], argv[2], "box", test::box_samples(16), fine) &&
                     make(argv[1], argv[2], "sphere-curves", test::sphere_samples(16), bent) &&
                     make(argv[1], argv[2], "box-deep", test::box_samples(16), deep) &&
-                    make(argv[1], argv[2], "nothing", {}, {});
+                    make(argv[1], argv[2], "nothing", {}, {}) &&
+                    make(argv[1], argv[2], "passes", test::plane_samples(16, 0.05), fine,
+                         {test::box_samples(16), test::sphere_samples(16)});
   return made ? 0 : 1;
 }

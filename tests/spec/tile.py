@@ -38,10 +38,29 @@ class Tile:
     def __init__(self, data):
         self._header(data)
         self.decoder = RangeDecoder(data[self.position:])
-        self.models = {kind: [[[32768, 0] for _ in range(size)] for size in sizes]
-                       for kind, (sizes, _) in KINDS.items()}
-        self.weights = {kind: [16384] * (5 * mixes) for kind, (_, mixes) in KINDS.items()}
-        self.planes, self.leaves, self.fine = [], [], {}
+        self.models, self.weights = {}, {}
+        for kind in KINDS:
+            self._forget(kind)
+        self.planes, self.leaves, self.fine, self.before, self.later = [], [], {}, {}, 0
+        self._pass()
+        while self.decoder.plain():
+            self.later += 1
+            if self.later == 16:
+                raise ValueError("too many passes")
+            self.before.update({place: leaf for place, leaf in self.fine.items() if leaf >= 0})
+            self.fine = {}
+            for kind in ("occupied", "split"):
+                self._forget(kind)
+            self._pass()
+        if self.decoder.exhausted or self.decoder.read < len(data) - self.position:
+            raise ValueError("the bits do not end where the surface does")
+
+    def _forget(self, kind):
+        sizes, mixes = KINDS[kind]
+        self.models[kind] = [[[32768, 0] for _ in range(size)] for size in sizes]
+        self.weights[kind] = [16384] * (5 * mixes)
+
+    def _pass(self):
         for x in range(self.side):
             for y in range(self.side):
                 for z in range(self.rows):
@@ -50,8 +69,11 @@ class Tile:
                         self._cube(context)
                     else:
                         self._fill(context, EMPTY)
-        if self.decoder.exhausted or self.decoder.read < len(data) - self.position:
-            raise ValueError("the bits do not end where the surface does")
+
+    def found(self, place):
+        """What a finest cube holds."""
+        now = self.fine.get(place, UNKNOWN)
+        return now if now >= 0 else self.before.get(place, now)
 
     def _header(self, data):
         def varint():
@@ -204,7 +226,7 @@ class Tile:
     def _state(self, axis, point):
         e = self.root - self.levels
         base = self.base << self.root
-        found = self.fine.get((point[0] >> e, point[1] >> e, (point[2] - base) >> e), UNKNOWN)
+        found = self.found((point[0] >> e, point[1] >> e, (point[2] - base) >> e))
         if found < 0:
             return 2 if found == UNKNOWN else 0
         leaf = self.leaves[found]
@@ -225,28 +247,39 @@ class Tile:
         def middle(i, j):
             return c.centre[u] - h + i * d + d // 2, c.centre[v] - h + j * d + d // 2
 
+        taken = set()
+
+        def opened(i, j):
+            return off[i, j] <= reach and (i, j) not in taken
+
         reach = h + ((abs(plane.slopes[0]) + abs(plane.slopes[1])) * d >> 17) + 256
         off = {(i, j): abs(plane.at(*middle(i, j)) - c.centre[a]) for i in range(m) for j in range(m)}
         state, known, seen = {place: 0 for place in off}, 0, 0
         for i in range(-1, m + 1):
             for j in range(-1, m + 1):
-                if (i, j) in off:
+                if (i, j) in off and not self.later:
                     continue
                 point = [0, 0, 0]
                 point[u], point[v] = middle(i, j)
                 point[a] = max(c.centre[a] - h, min(c.centre[a] + h - 1, plane.at(point[u], point[v])))
-                state[i, j] = self._state(a, point)
+                found = self._state(a, point)
+                if (i, j) in off:
+                    if found == 1:
+                        state[i, j] = 1
+                        taken.add((i, j))
+                    continue
+                state[i, j] = found
                 known += state[i, j] != 2
                 seen += state[i, j] == 1
         b = min(4, 5 * seen // known) if known else 5
         lower = min(b, 4)
         if self._bit("full", (3 * l + r, 16 * l + 3 * lower + r, 27 * l + c.all, 5 * l + lower,
                               6 * l + b), l):
-            return [1 if off[i, j] <= reach else 0 for i in range(m) for j in range(m)]
+            return [1 if opened(i, j) else 0 for i in range(m) for j in range(m)]
         decoded = on = 0
         for i in range(m):
             for j in range(m):
-                if off[i, j] > reach:
+                if not opened(i, j):
                     continue
                 w, n = state[i, j - 1], state[i - 1, j]
                 east = state[i, j + 1] if j == m - 1 else 2
@@ -262,7 +295,7 @@ class Tile:
                              17 * (wn + 16 * min(far, 3)) + y), (3 * min(w, 2) + min(n, 2)) * 3 + r)
                 decoded += 1
                 on += state[i, j]
-        return [state[i, j] for i in range(m) for j in range(m)]
+        return [state[i, j] if opened(i, j) else 0 for i in range(m) for j in range(m)]
 
 
 class Context:
@@ -279,9 +312,9 @@ class Context:
         votes, touching, smaller = {}, 0, 0
         for x in range(-1, f + 1):
             for y in range(-1, f + 1):
-                side = x in (-1, f) or y in (-1, f)
+                side = x in (-1, f) or y in (-1, f) or tile.later
                 for z in range(-1, f + 1) if side else (-1, f):
-                    found = tile.fine.get((low[0] + x, low[1] + y, low[2] + z), UNKNOWN)
+                    found = tile.found((low[0] + x, low[1] + y, low[2] + z))
                     if found < 0:
                         continue
                     leaf = tile.leaves[found]
@@ -307,7 +340,7 @@ class Context:
         for k, way in enumerate(((-1, 0, 0), (0, -1, 0), (0, 0, -1), (-1, 0, 1), (0, -1, 1), (-1, -1, 0))):
             spans = [range(f >> 1 if d < 0 else 0, (f + 1) >> 1 if d > 0 else f) for d in way]
             corner = [p + d * f for p, d in zip(low, way)]
-            if any(tile.fine.get((corner[0] + x, corner[1] + y, corner[2] + z), UNKNOWN) >= 0
+            if any(tile.found((corner[0] + x, corner[1] + y, corner[2] + z)) >= 0
                    for x in spans[0] for y in spans[1] for z in spans[2]):
                 self.around |= 1 << k
         self.intensity = tile.leaves[-1].intensity if tile.leaves else 0

@@ -270,5 +270,83 @@ TEST(SurfaceTile, CutAnywhereItIsDamaged) {
   }
 }
 
+/// Whether the leaves of a tile are the first ones of another, footprints and all.
+bool begins_with(const MapTile& longer, const MapTile& tile) {
+  if (longer.leaves.size() < tile.leaves.size()) return false;
+  for (std::size_t i = 0; i < tile.leaves.size(); ++i) {
+    const MapLeaf &a = tile.leaves[i], &b = longer.leaves[i];
+    if (a.centre != b.centre || a.axis != b.axis || a.height_m != b.height_m) return false;
+    if (a.slope != b.slope || a.curve != b.curve || a.cells != b.cells) return false;
+  }
+  return std::equal(tile.footprint.begin(), tile.footprint.end(), longer.footprint.begin());
+}
+
+TEST(LongerTile, OldLeavesStayAndWhatIsNewIsAdded) {
+  const auto plane = plane_samples(kSide, 0.02), box = box_samples(kSide);
+  SurfaceSettings settings;
+  settings.metres_per_bit = 0.05;
+  const auto old = encode_surface_tile(plane, settings, kSide).value();
+  const auto longer = append_surface_tile(old, box, settings);
+  ASSERT_TRUE(longer) << longer.error().message;
+  const MapTile before = decode_surface_tile(old).value();
+  const MapTile after = decode_surface_tile(longer->bytes).value();
+  EXPECT_TRUE(begins_with(after, before));
+  // The box reaches below the lowest row of the plane.
+  EXPECT_LT(mean_distance(box, after), 0.05);
+  EXPECT_GT(mean_distance(box, before), 0.3);
+  EXPECT_LE(mean_distance(plane, after), mean_distance(plane, before));
+  const auto alone = encode_surface_tile(box, settings, kSide).value();
+  EXPECT_LT(longer->bytes.size(), old.size() + 2 * alone.size());
+}
+
+TEST(LongerTile, WhatItTellsAlreadyCostsNothing) {
+  const auto plane = plane_samples(kSide, 0.02), box = box_samples(kSide);
+  SurfaceSettings settings;
+  settings.metres_per_bit = 0.05;
+  const auto old = encode_surface_tile(plane, settings, kSide).value();
+  const auto again = append_surface_tile(old, plane_samples(kSide, 0.04), settings).value();
+  EXPECT_TRUE(again.bytes.empty());
+  EXPECT_EQ(again.explained, plane.size());
+  const auto with_box = append_surface_tile(old, box, settings).value();
+  const auto twice = append_surface_tile(with_box.bytes, box, settings).value();
+  EXPECT_LE(static_cast<double>(twice.bytes.size()),
+            1.1 * static_cast<double>(with_box.bytes.size()));
+  EXPECT_TRUE(append_surface_tile(old, {}, settings).value().bytes.empty());
+}
+
+TEST(LongerTile, MayGrowManyTimes) {
+  SurfaceSettings settings;
+  settings.metres_per_bit = 0.02;
+  auto bytes = encode_surface_tile({}, settings, kSide).value();
+  std::vector<MapSample> all;
+  for (int k = 0; k < 20; ++k) {
+    std::vector<MapSample> shelf;
+    for (int i = 0; i < 900; ++i) {
+      shelf.push_back({{4 + 0.1 * (i % 30), 4 + 0.1 * (i / 30), 0.61 * k - 3}, 1, 0.5f});
+    }
+    const auto longer = append_surface_tile(bytes, shelf, settings);
+    ASSERT_TRUE(longer) << longer.error().message;
+    ASSERT_FALSE(longer->bytes.empty()) << k;
+    bytes = longer->bytes;
+    all.insert(all.end(), shelf.begin(), shelf.end());
+  }
+  const MapTile tile = decode_surface_tile(bytes).value();
+  EXPECT_LT(mean_distance(all, tile), 0.05);
+  // Levels of detail join leaves of all passes.
+  const MapTile coarse = decode_surface_tile(bytes, {}, 1).value();
+  EXPECT_LE(coarse.leaves.size(), tile.leaves.size());
+  for (const MapLeaf& leaf : coarse.leaves) EXPECT_LE(leaf.level, 1);
+}
+
+TEST(LongerTile, CutAnywhereItIsDamaged) {
+  const auto old = encode_surface_tile(plane_samples(kSide, 0.02), {}, kSide).value();
+  const auto longer = append_surface_tile(old, box_samples(kSide), {}).value();
+  for (std::size_t size = 0; size < longer.bytes.size(); size += 7) {
+    const auto cut = ByteSpan(longer.bytes).first(size);
+    EXPECT_FALSE(decode_surface_tile(cut)) << size;
+    EXPECT_EQ(append_surface_tile(cut, {}, {}).error().code, ErrorCode::corrupt);
+  }
+}
+
 }  // namespace
 }  // namespace curlidar

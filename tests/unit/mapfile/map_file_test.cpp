@@ -226,6 +226,20 @@ TEST_F(MapFileTest, ASecondLapCostsLittle) {
   EXPECT_EQ(open("b.curl").header().scans, 16u);
 }
 
+TEST_F(MapFileTest, TheSameScansAgainChangeNoTile) {
+  drive("a.curl", settings(), 4, {0, 0, 2});
+  const auto map = std::make_shared<const MapFile>(open("a.curl"));
+  MapBuilder builder = MapBuilder::append(map, settings()).value();
+  offer(builder, 4, {0, 0, 2});
+  const MapReport report = builder.finish(path("b.curl")).value();
+  EXPECT_EQ(report.tiles_kept, report.tiles);
+  const MapFile after = open("b.curl");
+  ASSERT_EQ(after.tiles().size(), map->tiles().size());
+  for (std::size_t i = 0; i < after.tiles().size(); ++i) {
+    EXPECT_EQ(map->read_part(i).value(), after.read_part(i).value());
+  }
+}
+
 TEST_F(MapFileTest, AppendingKeepsUntouchedTilesAndMendsDamagedOnes) {
   drive("a.curl", settings(), 4, {0, 0, 2});
   std::vector<std::byte> bytes = read_file(path("a.curl")).value();
