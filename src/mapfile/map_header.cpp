@@ -154,9 +154,9 @@ Result<std::vector<std::byte>> write_map_header(const MapHeader& header) {
   writer.write(header.travelled_m);
   if (header.kind == MapKind::surface) {
     const SurfaceSettings& s = header.surface;
-    for (const double value :
-         {header.tile_side_m, header.thinning_m, s.step_m, s.metres_per_bit, s.root_m,
-          s.smallest_leaf_m, s.footprint_m, s.drop_m, s.intensity_step}) {
+    for (const double value : {header.tile_side_m, header.thinning_m, s.step_m, s.metres_per_bit,
+                               s.root_m, s.smallest_leaf_m, s.footprint_m, s.drop_m, s.bare_samples,
+                               s.full_weight, s.intensity_step}) {
       writer.write(value);
     }
     writer.write(
@@ -177,9 +177,9 @@ Result<MapHeader> read_map_header(MapKind kind, ByteSpan bytes, const std::strin
   header.travelled_m = reader.read<double>();
   if (kind == MapKind::surface) {
     SurfaceSettings& s = header.surface;
-    for (double* value :
-         {&header.tile_side_m, &header.thinning_m, &s.step_m, &s.metres_per_bit, &s.root_m,
-          &s.smallest_leaf_m, &s.footprint_m, &s.drop_m, &s.intensity_step}) {
+    for (double* value : {&header.tile_side_m, &header.thinning_m, &s.step_m, &s.metres_per_bit,
+                          &s.root_m, &s.smallest_leaf_m, &s.footprint_m, &s.drop_m, &s.bare_samples,
+                          &s.full_weight, &s.intensity_step}) {
       *value = reader.read<double>();
     }
     const auto flags = reader.read<std::uint8_t>();

@@ -5,7 +5,7 @@ from indexed import MapFile, need, numbers
 from tile import Tile
 
 SETTINGS = ("step", "metres_per_bit", "root", "smallest_leaf", "footprint", "drop",
-            "intensity_step")
+            "bare_samples", "full_weight", "intensity_step")
 MOST_TILES = 1 << 20
 MOST_HEIGHT = 1e6
 BOX_STEP = 0.25
@@ -33,7 +33,7 @@ class SurfaceMap(MapFile):
 
     def header_of_kind(self, reader):
         self.side, self.thinning = numbers(reader, "2d")
-        self.settings = dict(zip(SETTINGS, numbers(reader, "7d")))
+        self.settings = dict(zip(SETTINGS, numbers(reader, "9d")))
         flags = reader.u8()
         need(0.5 <= self.side <= 1024 and 0.001 <= self.thinning <= 10, "sizes")
         roots = self.side / self.settings["root"]
