@@ -43,6 +43,9 @@ void parse_picture_size(const std::string& text, RenderSettings& settings) {
 
 Image map_picture(Cloud cloud, RenderSettings settings, const std::string& size) {
   parse_picture_size(size, settings);
+  if (cloud.size() == 0) {
+    throw Failure({ErrorCode::invalid_argument, "the map has no surface to draw"}, kExitInput);
+  }
   const Span x = span_of(cloud, &Vec3::x), y = span_of(cloud, &Vec3::y);
   for (Vec3& p : cloud.positions) p = p - Vec3{x.middle(), y.middle(), 0};
   if (settings.view == View::birds_eye) {

@@ -8,8 +8,8 @@
 
 #include "common_inputs.hpp"
 #include "common_options.hpp"
+#include "common_scans.hpp"
 #include "curlidar/map.hpp"
-#include "curlidar/pose.hpp"
 
 namespace curlidar::app {
 
@@ -32,7 +32,8 @@ std::vector<double> parse_numbers(const std::string& text, const char* option, s
 /// Scans and poses of `map build` and `map append`.
 struct MapInputs {
   std::vector<std::string> inputs;
-  std::string poses, calib, times, pose_format, format, every = "1", output;
+  std::string format, every = "1", output;
+  PoseOptions poses;
   bool still = false;
   double max_memory_mb = 100;
 };

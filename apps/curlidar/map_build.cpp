@@ -91,6 +91,7 @@ SurfaceSettings surface_of(const BuildOptions& options) {
 }
 
 int run_build(const BuildOptions& options) {
+  refuse_mixed_stdout(options.common, options.inputs.output);
   MapBuildSettings settings;
   settings.header = options.header;
   settings.header.surface = surface_of(options);
@@ -110,12 +111,14 @@ int run_build(const BuildOptions& options) {
   apply(options.inputs, settings);
   MapBuilder builder = need_option(MapBuilder::create(settings));
   print_result(options.common,
-               build_map(options.common, options.inputs, builder, options.inputs.output));
+               build_map(options.common, options.inputs, builder, options.inputs.output),
+               options.inputs.output == "-");
   return kExitOk;
 }
 
 int run_append(const BuildOptions& options) {
   const std::string& output = options.inputs.output.empty() ? options.map : options.inputs.output;
+  refuse_mixed_stdout(options.common, output);
   const auto map = std::make_shared<const MapFile>(load_map(options.map));
   MapBuildSettings settings;
   refuse_other_kind(options, map->header().kind);
@@ -131,7 +134,7 @@ int run_append(const BuildOptions& options) {
   Outcome outcome = build_map(options.common, options.inputs, builder, output);
   outcome.json["bytes_before"] = before;
   outcome.text += fmt::format("  {} before\n", bytes_text(before));
-  print_result(options.common, outcome);
+  print_result(options.common, outcome, output == "-");
   return kExitOk;
 }
 

@@ -45,16 +45,23 @@ MapExtractSettings settings_of(const ExtractOptions& options) {
   if (!options.box.empty()) {
     const auto n = parse_numbers(options.box, "--box", 6);
     settings.box = MapBox{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+    if (n[0] > n[3] || n[1] > n[4] || n[2] > n[5]) {
+      usage_error(
+          fmt::format("--box {}: the smaller corner goes first: x0,y0,z0,x1,y1,z1", options.box));
+    }
   }
   if (!options.radius.empty()) {
     const auto n = parse_numbers(options.radius, "--radius", 4);
     settings.centre = Vec3{n[0], n[1], n[2]};
     settings.radius_m = n[3];
+    if (!(n[3] > 0)) usage_error(fmt::format("--radius {}: r must be above 0", options.radius));
   }
   if (!options.tile.empty()) {
     const auto n = parse_numbers(options.tile, "--tile", 2);
-    if (!(std::abs(n[0]) < 1e6 && std::abs(n[1]) < 1e6))
-      usage_error("--tile: there is no such tile");
+    const auto is_number = [](double k) { return std::abs(k) <= 1 << 20 && k == std::floor(k); };
+    if (!is_number(n[0]) || !is_number(n[1])) {
+      usage_error(fmt::format("--tile {}: two whole numbers are needed", options.tile));
+    }
     settings.tile = TileKey{static_cast<std::int32_t>(n[0]), static_cast<std::int32_t>(n[1])};
   }
   if (options.level) settings.max_level = *options.level;

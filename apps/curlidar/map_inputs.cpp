@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scans and poses of `map build` and `map append`.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "map.hpp"
 
@@ -17,52 +20,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files as they are given, folders as the clouds and .curl files in them, by name.
-std::vector<std::string> scan_files(const std::vector<std::string>& inputs) {
-  std::vector<std::string> files;
-  for (const std::string& input : inputs) {
+/// What is wrong before the first scan is read need not wait for the last one.
+void check_files(const std::vector<std::string>& scans, const MapInputs& inputs,
+                 const std::string& output) {
+  for (const std::string& scan : scans) {
+    refuse_same_file(scan, output);
     std::error_code error;
-    if (!fs::is_directory(input, error)) {
-      files.push_back(input);
-      continue;
-    }
-    std::vector<std::string> found;
-    for (fs::directory_iterator at(input, error), end; !error && at != end; at.increment(error)) {
-      const std::string path = at->path().string();
-      const bool scan = cloud_format_by_extension(path) || path.ends_with(".curl");
-      // Text beside scans is times and poses.
-      if (scan && !path.ends_with(".txt") && !at->path().filename().string().starts_with('.')) {
-        found.push_back(path);
-      }
-    }
-    if (error || found.empty()) {
-      throw Failure({ErrorCode::not_found,
-                     fmt::format("{}: {}", input, error ? error.message() : "no scans in it")},
-                    kExitFile);
-    }
-    std::sort(found.begin(), found.end());
-    files.insert(files.end(), found.begin(), found.end());
+    if (scan == "-" || fs::exists(scan, error)) continue;
+    throw Failure({ErrorCode::not_found, scan + ": no such scan"}, kExitFile);
   }
-  return files;
-}
-
-PoseTrack poses_for(const MapInputs& inputs, std::size_t scans) {
-  PoseReadOptions options;
-  if (!inputs.pose_format.empty()) {
-    options.format = need_option(pose_format_by_name(inputs.pose_format));
+  refuse_same_file(inputs.poses.path, output);
+  if (output == "-") return;
+  const fs::path folder = fs::path(output).parent_path();
+  if (::access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) != 0) {
+    throw Failure({ErrorCode::io, fmt::format("{}: cannot write into its folder: {}", output,
+                                              std::generic_category().message(errno))},
+                  kExitFile);
   }
-  options.calib_path = inputs.calib;
-  options.times_path = inputs.times;
-  PoseTrack track = need(read_poses(inputs.poses, options));
-  for (const std::string& warning : track.warnings) print_warning(warning);
-  if (track.T_map_sensor.size() != scans) {
-    throw Failure({ErrorCode::invalid_argument,
-                   fmt::format("{}: {} poses for {} scans; give one pose for each scan, in their "
-                               "order",
-                               inputs.poses, track.T_map_sensor.size(), scans)},
-                  kExitInput);
-  }
-  return track;
 }
 
 std::string report_text(const MapReport& report, const std::string& output, double travelled_m,
@@ -84,13 +58,8 @@ std::string report_text(const MapReport& report, const std::string& output, doub
 }  // namespace
 
 void add_map_inputs(CLI::App& app, MapInputs& inputs) {
-  app.add_option("--poses", inputs.poses,
-                 "Poses, one for each scan: T_map_sensor, in KITTI, TUM, matrix or CSV form")
-      ->required();
-  app.add_option("--calib", inputs.calib, "KITTI's calib.txt: the poses are those of its camera");
-  app.add_option("--times", inputs.times, "Times of the scans, seconds, one on each line");
-  app.add_option("--pose-format", inputs.pose_format,
-                 "kitti, tum, matrix or csv; default by content");
+  add_pose_options(app, inputs.poses);
+  app.get_option("--poses")->required();
   app.add_option("--format", inputs.format,
                  fmt::format("Format of the scans: {}; default by content", kFormatNames));
   app.add_option("--every", inputs.every,
@@ -120,8 +89,9 @@ void apply(const MapInputs& inputs, MapBuildSettings& settings) {
 Outcome build_map(const CommonOptions& common, const MapInputs& inputs, MapBuilder& builder,
                   const std::string& output) {
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<std::string> scans = scan_files(inputs.inputs);
-  const PoseTrack track = poses_for(inputs, scans.size());
+  const std::vector<std::string> scans = list_scans(inputs.inputs);
+  check_files(scans, inputs, output);
+  const PoseTrack track = load_poses(inputs.poses, scans.size());
   const auto format = parse_format(inputs.format);
   ProgressBar bar(!common.quiet);
   for (std::size_t i = 0; i < scans.size(); ++i) {
@@ -147,6 +117,9 @@ Outcome build_map(const CommonOptions& common, const MapInputs& inputs, MapBuild
       }));
   bar.clear();
   for (const std::string& note : report.notes) print_warning(note);
+  if (report.taken > 0 && report.points == 0) {
+    print_warning("no return lies from --min-range to --max-range: nothing new is in the map");
+  }
   double travelled_m = 0;
   for (std::size_t i = 1; i < track.T_map_sensor.size(); ++i) {
     travelled_m += norm(track.T_map_sensor[i].move - track.T_map_sensor[i - 1].move);

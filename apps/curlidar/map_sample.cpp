@@ -122,6 +122,7 @@ int run(const Options& options) {
   }
   save_cloud(options.output, cloud, {});
   const std::size_t returns = count_returns(cloud);
+  if (returns == 0) print_warning("no line of sight met the map: see 'map info' for its extent");
   json["rows"] = cloud.height;
   json["columns"] = cloud.width;
   json["returns"] = returns;

@@ -125,21 +125,21 @@ const char* to_string(MapKind kind) {
 }
 
 Status validate(const MapHeader& header) {
-  const auto wrong = [](const char* what, double value) {
-    return Error{ErrorCode::invalid_argument, fmt::format("{} is {:g}", what, value)};
+  const auto check = [](const char* what, double value, double low, double high) -> Status {
+    if (within(value, low, high)) return {};
+    return Error{
+        ErrorCode::invalid_argument,
+        fmt::format("{} is {:g} m; it must be from {:g} to {:g} m", what, value, low, high)};
   };
   for (const double place : {header.origin.x, header.origin.y, header.origin.z}) {
-    if (!within(place, -kMostPlace_m, kMostPlace_m)) return wrong("the map's origin", place);
+    CURLIDAR_TRY(check("the map's origin", place, -kMostPlace_m, kMostPlace_m));
   }
-  if (!within(header.min_range_m, 0, 1e6)) return wrong("the smallest range", header.min_range_m);
-  if (!within(header.max_range_m, header.min_range_m, 1e6)) {
-    return wrong("the largest range", header.max_range_m);
-  }
-  if (!within(header.travelled_m, 0, 1e15)) return wrong("the way", header.travelled_m);
+  CURLIDAR_TRY(check("the smallest range", header.min_range_m, 0, 1e6));
+  CURLIDAR_TRY(check("the largest range", header.max_range_m, header.min_range_m, 1e6));
+  CURLIDAR_TRY(check("the way", header.travelled_m, 0, 1e15));
   if (header.kind == MapKind::scans) return {};
-  if (!within(header.thinning_m, 0.001, 10))
-    return wrong("the edge of thinning", header.thinning_m);
-  if (!within(header.tile_side_m, 0.5, 1024)) return wrong("a tile's side", header.tile_side_m);
+  CURLIDAR_TRY(check("the edge of thinning", header.thinning_m, 0.001, 10));
+  CURLIDAR_TRY(check("a tile's side", header.tile_side_m, 0.5, 1024));
   return validate(header.surface, header.tile_side_m);
 }
 

@@ -87,9 +87,40 @@ class MapTest(CommandTest):
         self.run_fail(FILE, "map", "build", "scans", "--poses", "poses.txt", "-o", "no/x.curl")
         self.run_fail(USAGE, "map", "extract", "street.curl", "--rows", "8", "-o", "x.ply",
                       says="surface map")
-        self.run_fail(USAGE, "map", "extract", "street.curl", "--box", "1,2", "-o", "x.ply",
-                      says="--box")
+        extract = ["map", "extract", "street.curl", "-o", "x.ply"]
+        for part in (["--box", "1,2"], ["--box", "0,0,0,1,-1,1"], ["--radius", "0,0,0,0"],
+                     ["--tile", "1.5,0"], ["--spacing", "0"]):
+            self.run_fail(USAGE, *extract, *part, says=part[0])
+        build = ["map", "build", "scans", "--poses", "poses.txt"]
+        self.run_fail(USAGE, *build, "--min-range", "9", "--max-range", "8", "-o", "x.curl",
+                      says="from 9 to")
+        self.run_fail(FILE, "map", "build", "none.pcd", "--poses", "one.txt", "-o", "x.curl",
+                      says="none.pcd")
+        self.run_fail(FILE, *build[:3], "--poses", "none.txt", "-o", "x.curl", says="none.txt")
+        self.run_fail(USAGE, *build[:3], "-o", "x.curl", says="--poses")
+        self.run_fail(USAGE, *build, "-o", "scans/0.pcd", says="scans/0.pcd")
+        self.run_fail(USAGE, *build, "-o", "poses.txt", says="poses.txt")
+        self.run_fail(FILE, *build, "-o", "scans")
+        self.run_fail(INPUT, "map", "info", "scans/0.pcd", says="not a .curl file")
+        self.run_ok("encode", "scans/0.pcd", "-o", "scan.curl", "--quiet")
+        for command in (["info"], ["extract", "-o", "x.ply"], ["render", "-o", "x.png"]):
+            self.run_fail(INPUT, "map", command[0], "scan.curl", *command[1:],
+                          says="a .curl file of one scan")
         self.assertNotIn("x.curl", self.files())
+
+    def test_a_map_may_be_empty(self):
+        result = self.execute("map", "build", "scans", "--poses", "poses.txt", "--min-range", "500",
+                              "--max-range", "600", "-o", "empty.curl")
+        self.assertEqual(result.returncode, 0, result.stderr.decode())
+        self.assertIn(b"--min-range", result.stderr)
+        self.assertEqual(self.run_json("map", "info", "empty.curl")["tiles"], 0)
+        self.run_fail(INPUT, "map", "render", "empty.curl", says="no surface")
+        self.run_fail(INPUT, "map", "compare", "empty.curl", "scans/0.pcd", says="no surface")
+
+    def test_a_map_goes_through_pipes(self):
+        data = self.run_ok("map", "build", "scans", "--poses", "poses.txt", "-o", "-", "--quiet")
+        self.assertEqual(data, self.path("street.curl").read_bytes())
+        self.assertIn(b"tiles", self.run_ok("map", "info", "-", stdin=data))
 
     def test_a_cut_map_is_refused_or_read_in_part(self):
         data = self.path("street.curl").read_bytes()
@@ -144,22 +175,40 @@ class MapTest(CommandTest):
         folder = self.folder / "killed"
         folder.mkdir()
         old = self.path("street.curl").read_bytes()
-        for number in (signal.SIGTERM, signal.SIGKILL):
-            for wait_s in (0.02, 0.2):
-                target = folder / f"{int(number)}-{int(wait_s * 1000)}.curl"
+        self.write_poses("many.txt", [float(i) for i in range(20)])
+        ended = 0
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
+            for late in (False, True):
+                target = folder / f"{int(number)}-{late}.curl"
                 target.write_bytes(old)
-                many = ["scans"] * 20
-                self.write_poses("many.txt", [float(i) for i in range(40)])
-                with subprocess.Popen([CURLIDAR, "map", "append", str(target), *many, "--poses",
-                                       "many.txt", "--quiet"], cwd=self.folder) as process:
-                    time.sleep(wait_s)
-                    process.send_signal(number)
-                    ended = process.wait()
-                if ended != 0:
+                code, pid = self.end_append(target, number, late)
+                # Nobody can handle SIGKILL: its hidden file stays, and has its name.
+                hidden = [name for name in os.listdir(folder) if name.startswith(f".curlidar-{pid}-")]
+                if number != signal.SIGKILL:
+                    self.assertEqual(hidden, [])
+                if code != 0:
+                    self.assertEqual(code, -number)
                     self.assertEqual(target.read_bytes(), old)
+                    ended += 1
                 self.run_ok("map", "info", target)
-        hidden = [name for name in os.listdir(folder) if name.startswith(".")]
-        self.assertLessEqual(len(hidden), 2)  # of SIGKILL, which nobody can handle
+        self.assertGreater(ended, 0)
+
+    def end_append(self, target, number, late):
+        """Appends, and sends the signal soon or when the map is being written."""
+        def listening():
+            signal.signal(signal.SIGINT, signal.SIG_DFL)
+        with subprocess.Popen([CURLIDAR, "map", "append", str(target), *["scans"] * 10, "--poses",
+                               "many.txt", "--quiet"], cwd=self.folder,
+                              preexec_fn=listening) as process:
+            begin = f".curlidar-{process.pid}-"
+            while late and process.poll() is None:
+                if any(name.startswith(begin) for name in os.listdir(target.parent)):
+                    break
+                time.sleep(0.002)
+            if not late:
+                time.sleep(0.05)
+            process.send_signal(number)
+            return process.wait(), process.pid
 
 
 if __name__ == "__main__":

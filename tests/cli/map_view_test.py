@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """map sample, map compare and map render, on a map of one simulated scan."""
 
+import json
 import unittest
 
 from support import FILE, INPUT, OK, USAGE, CommandTest, png_size
@@ -27,8 +28,11 @@ class MapViewTest(CommandTest):
         self.assertLess(report["along"]["range_error"]["p50"], 0.3)
 
     def test_only_tiles_within_reach_are_read(self):
-        report = self.run_json("map", "sample", "map.curl", "--sensor", "vlp16", "--pose",
-                               "9000,0,0", "-o", "far.pcd")
+        result = self.execute("map", "sample", "map.curl", "--sensor", "vlp16", "--pose",
+                              "9000,0,0", "-o", "far.pcd", "--json")
+        self.assertEqual(result.returncode, OK, result.stderr.decode())
+        self.assertIn(b"no line of sight met the map", result.stderr)
+        report = json.loads(result.stdout)
         self.assertEqual(report["tiles_read"], 0)
         self.assertEqual(report["returns"], 0)
 
