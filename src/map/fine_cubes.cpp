@@ -39,6 +39,31 @@ void FineCubes::fill(const TileCube& cube, std::int32_t value) {
   }
 }
 
+bool FineCubes::any_leaf(const std::array<std::int32_t, 3>& low,
+                         const std::array<std::int32_t, 3>& high) const {
+  if (low[0] < 0 || low[1] < 0 || low[2] < 0) return false;
+  if (low[0] >= side_ || low[1] >= side_ || low[2] >= height_) return false;
+  std::array<std::uint32_t, 3> at{}, size{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    at[k] = static_cast<std::uint32_t>(low[k]);
+    size[k] = static_cast<std::uint32_t>(high[k] - low[k]);
+  }
+  const std::uint32_t log2 = layout_.levels, mask = (1u << log2) - 1;
+  const std::int32_t number = block_of_[root_at(at[0] >> log2, at[1] >> log2, at[2] >> log2)];
+  if (number < 0) return false;
+  const std::int32_t* block = blocks_.data() + (static_cast<std::size_t>(number) << 3 * log2);
+  for (std::uint32_t i = 0; i < size[0]; ++i) {
+    for (std::uint32_t j = 0; j < size[1]; ++j) {
+      const std::int32_t* row =
+          block + ((((at[0] & mask) + i) << log2 | ((at[1] & mask) + j)) << log2 | (at[2] & mask));
+      for (std::uint32_t k = 0; k < size[2]; ++k) {
+        if (row[k] >= 0) return true;
+      }
+    }
+  }
+  return false;
+}
+
 void FineCubes::lay_on(const FineCubes& others) {
   const std::size_t cubes = std::size_t{1} << 3 * layout_.levels;
   for (std::size_t root = 0; root < block_of_.size(); ++root) {

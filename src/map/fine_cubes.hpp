@@ -2,6 +2,7 @@
 // What each finest cube of a tile holds.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -34,6 +35,9 @@ class FineCubes {
   bool may_hold(std::uint32_t x, std::uint32_t y, std::uint32_t z) const {
     return block_of_[root_at(x, y, z)] >= 0;
   }
+  /// Whether a leaf is in a box of finest cubes [low, high), all of one root or outside.
+  bool any_leaf(const std::array<std::int32_t, 3>& low,
+                const std::array<std::int32_t, 3>& high) const;
   /// Takes what others hold where they hold leaves.
   void lay_on(const FineCubes& others);
   /// Memory taken so far, in finest cubes.

@@ -2,8 +2,8 @@
 // Points seen many times, made few: one sample for each small cube.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 #include "curlidar/map_settings.hpp"
@@ -11,7 +11,7 @@
 namespace curlidar {
 
 /// Gathers the points of a tile. What it gives does not depend on the order in which points came.
-/// 64 bytes or so for each cube that was hit.
+/// 100 bytes or so for each cube that was hit.
 class SampleGrid {
  public:
   explicit SampleGrid(double edge_m = 0.05) : edge_m_(edge_m) {}
@@ -29,8 +29,12 @@ class SampleGrid {
     std::int64_t x = 0, y = 0, z = 0;  ///< sums, from the cube's corner, in 1/65536 of its edge
     double intensity = 0;              ///< sum of multiples of 2^-16
   };
-  /// Cubes by their keys, in no order.
-  const std::unordered_map<std::uint64_t, Cell>& cells() const { return cells_; }
+  struct KeyedCell {
+    std::uint64_t key = 0;
+    Cell cell;
+  };
+  /// Cubes with their keys, in the order in which they were hit first.
+  const std::vector<KeyedCell>& cells() const { return cells_; }
   /// Adds what another grid of the same edge knows of a cube.
   void add_cell(std::uint64_t key, const Cell& cell);
 
@@ -40,8 +44,13 @@ class SampleGrid {
   static constexpr float kMostWeight = 2;
 
  private:
+  Cell& cell_of(std::uint64_t key);
+  void widen();
+
   double edge_m_;
-  std::unordered_map<std::uint64_t, Cell> cells_;
+  std::vector<KeyedCell> cells_;
+  /// Open addressing: places in cells_ plus 1, 0 where there is none; at most half are taken.
+  std::vector<std::uint32_t> places_;
 };
 
 }  // namespace curlidar

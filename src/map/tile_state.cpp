@@ -48,14 +48,8 @@ bool TileState::any_in(const TileCube& cube, int dx, int dy, int dz) const {
   const std::int32_t x0 = dx < 0 ? f / 2 : 0, x1 = dx > 0 ? (f + 1) / 2 : f;
   const std::int32_t y0 = dy < 0 ? f / 2 : 0, y1 = dy > 0 ? (f + 1) / 2 : f;
   const std::int32_t z0 = dz < 0 ? f / 2 : 0, z1 = dz > 0 ? (f + 1) / 2 : f;
-  for (std::int32_t i = x0; i < x1; ++i) {
-    for (std::int32_t j = y0; j < y1; ++j) {
-      for (std::int32_t k = z0; k < z1; ++k) {
-        if (fine_at(x + i, y + j, z + k) >= 0) return true;
-      }
-    }
-  }
-  return false;
+  const std::array<std::int32_t, 3> low = {x + x0, y + y0, z + z0}, high = {x + x1, y + y1, z + z1};
+  return now_.any_leaf(low, high) || (later_ && before_.any_leaf(low, high));
 }
 
 void TileState::gather_planes(CubeContext& c, bool touching_any) const {
