@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "compact/field_encoder.hpp"
 
+#include <utility>
+
+#include "compact/learnt_models.hpp"
 #include "entropy/range_coder.hpp"
 
 namespace curlidar::compact {
@@ -49,6 +52,12 @@ class PartSink {
   std::array<std::uint64_t, kFieldParts>& costs_;
 };
 
+/// What the models know before the first root.
+FieldModels first_models(const Guide* guide) {
+  const bool learnt = guide != nullptr && guide->learnt != nullptr && guide->learnt->field;
+  return learnt ? *guide->learnt->field : FieldModels(guide != nullptr);
+}
+
 }  // namespace
 
 EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& truth,
@@ -56,7 +65,7 @@ EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& tr
   EncodedField out;
   state.clear();
   MeteredEncoder encoder;
-  FieldModels models(state.guide != nullptr);
+  FieldModels models = first_models(state.guide);
   PartSink sink(encoder, models, out.part_cost);
   for (const Block& block : roots_of(state.geometry, state.settings)) {
     const std::size_t surfaces = state.surfaces.size();
@@ -72,10 +81,11 @@ EncodedField encode_field(FieldState& state, const std::vector<std::int32_t>& tr
   return out;
 }
 
-DecodedField decode_field(FieldState& state, ByteSpan bytes, bool whole, bool keep_nodes) {
+DecodedField decode_field(FieldState& state, ByteSpan bytes, bool whole, bool keep_nodes,
+                          LearntModels* learnt) {
   DecodedField out;
   RangeDecoder decoder(bytes);
-  FieldModels models(state.guide != nullptr);
+  FieldModels models = first_models(state.guide);
   MixSink<RangeDecoder> sink(decoder, models);
   for (const Block& block : roots_of(state.geometry, state.settings)) {
     Node node{block, {}, {}, {}, {}};
@@ -84,6 +94,7 @@ DecodedField decode_field(FieldState& state, ByteSpan bytes, bool whole, bool ke
     ++out.complete_roots;
     if (keep_nodes) out.roots.push_back(std::move(node));
   }
+  if (learnt != nullptr && models.guided()) learnt->field = std::move(models);
   return out;
 }
 

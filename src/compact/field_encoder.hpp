@@ -29,8 +29,9 @@ struct DecodedField {
   std::size_t complete_roots = 0;  ///< known before the bytes ran out; those after it are not
 };
 /// Reads a field into `state`, from any bytes. `whole`: the bytes are all that was written, else
-/// their end is cut off. Nodes take some 300 bytes a leaf.
+/// their end is cut off. `learnt` takes what the models of a predicted scan know then. Nodes take
+/// some 300 bytes a leaf.
 DecodedField decode_field(FieldState& state, ByteSpan bytes, bool whole = true,
-                          bool keep_nodes = true);
+                          bool keep_nodes = true, LearntModels* learnt = nullptr);
 
 }  // namespace curlidar::compact

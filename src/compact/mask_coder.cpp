@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "compact/learnt_models.hpp"
 #include "compact/mask_guide.hpp"
 #include "compact/mask_model.hpp"
 #include "compact/mask_priors.hpp"
@@ -19,17 +20,28 @@ Model start(const MaskLearning& learning, const Model& priors) {
   return model;
 }
 
+/// What a guided mask begins with.
+GuidedMaskModel known_before(const Guide& guide) {
+  if (guide.learnt != nullptr && guide.learnt->mask) return *guide.learnt->mask;
+  GuidedMaskModel model = guided_mask_priors();
+  if (guide.learnt != nullptr) std::ranges::copy(guide.learnt->plain_mask, model.models().begin());
+  return model;
+}
+
 /// One walk for writing and reading, with a guide or without.
 template <class Coder, class Cell, class RowDone>
 void code_rows(Coder& coder, const MaskLearning& learning, const MaskShape& shape,
-               const Guide* guide, Cell* cells, const RowDone& row_done) {
+               const Guide* guide, Cell* cells, const RowDone& row_done,
+               LearntModels* learnt = nullptr) {
   if (guide == nullptr) {
     MaskModel model = start(learning, mask_priors());
     code_mask(coder, model, shape, learning.rate, cells, row_done);
+    if (learnt != nullptr) learnt->plain_mask.assign(model.models().begin(), model.models().end());
     return;
   }
-  GuidedMaskModel model = start(learning, guided_mask_priors());
+  GuidedMaskModel model = start(learning, known_before(*guide));
   code_guided_mask(coder, model, MaskHints(*guide, shape), shape, learning.rate, cells, row_done);
+  if (learnt != nullptr) learnt->mask = std::move(model);
 }
 
 /// Codes which way of learning follows.
@@ -63,17 +75,21 @@ std::vector<std::byte> encode_mask(std::span<const std::uint8_t> occupied, const
 }
 
 std::size_t decode_mask(ByteSpan bytes, const MaskShape& shape, bool whole,
-                        std::span<std::uint8_t> occupied, const Guide* guide) {
+                        std::span<std::uint8_t> occupied, const Guide* guide,
+                        LearntModels* learnt) {
   if (shape.rows == 0 || shape.columns == 0) return shape.rows;
   std::fill(occupied.begin(), occupied.end(), std::uint8_t{0});
   RangeDecoder coder(bytes);
   const MaskLearning& learning = kMaskLearning[code_learning(coder, 0)];
   std::size_t sure = 0;
-  code_rows(coder, learning, shape, guide, occupied.data(), [&](std::size_t row) {
-    const bool known = whole ? !coder.exhausted() : !coder.finished();
-    if (known) sure = row + 1;
-    return known;
-  });
+  code_rows(
+      coder, learning, shape, guide, occupied.data(),
+      [&](std::size_t row) {
+        const bool known = whole ? !coder.exhausted() : !coder.finished();
+        if (known) sure = row + 1;
+        return known;
+      },
+      learnt);
   std::fill(occupied.begin() + static_cast<std::ptrdiff_t>(sure * shape.columns), occupied.end(),
             std::uint8_t{0});
   return sure;

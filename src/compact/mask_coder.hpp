@@ -31,6 +31,7 @@ std::vector<std::byte> encode_mask(std::span<const std::uint8_t> occupied, const
 /// rows before the returned one (in [0, rows]) are sure, and the others come out empty. Of whole
 /// bytes all rows count, unless the bytes are not an encoder's and end too early.
 std::size_t decode_mask(ByteSpan bytes, const MaskShape& shape, bool whole,
-                        std::span<std::uint8_t> occupied, const Guide* guide = nullptr);
+                        std::span<std::uint8_t> occupied, const Guide* guide = nullptr,
+                        LearntModels* learnt = nullptr);
 
 }  // namespace curlidar::compact

@@ -207,6 +207,7 @@ Prediction predict(const DecodedScan& reference, const RelativePose& pose, const
   }
   extend(sights, columns == table.turn_columns, out);
   mark_was_there(reference, table, out);
+  out.learnt = reference.learnt;
   return out;
 }
 
@@ -226,6 +227,9 @@ Guide guide_of(const Prediction& prediction, const SegmentPlace& place) {
   cut(prediction.range, out.range);
   cut(prediction.level, out.level);
   cut(prediction.was_there, out.was_there);
+  if (place.rows == prediction.rows && place.columns == prediction.columns) {
+    out.learnt = prediction.learnt.get();
+  }
   return out;
 }
 

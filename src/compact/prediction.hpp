@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "compact/prediction_guide.hpp"
@@ -27,6 +28,7 @@ struct Prediction {
   std::vector<std::int32_t> range;      ///< of that plane in the cell's line of sight, Q16; 0: none
   std::vector<std::uint8_t> level;      ///< cells to the nearest with a plane of its own; kLevels
   std::vector<std::uint8_t> was_there;  ///< the reference has a return where the cell is now
+  std::shared_ptr<const LearntModels> learnt;  ///< of the reference, if it is one segment
 };
 
 /// Moves and projects. The tables must be valid. O(cells), some 100 ns each.

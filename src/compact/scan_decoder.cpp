@@ -310,6 +310,7 @@ Result<DecodedScan> decode_scan(const ScanChunks& chunks, const ScanLimits& limi
                               chunk_of(views[0], i), chunk_of(views[1], i), residual_of(i),
                               options.keep_nodes, prediction ? &*prediction : nullptr);
   });
+  if (scans.size() == 1) out.learnt = std::move(scans.front().learnt);
 
   const std::size_t cells = std::size_t{out.parameters.rows} * out.parameters.columns;
   out.occupied.resize(cells);

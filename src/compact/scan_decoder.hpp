@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +16,8 @@
 #include "curlidar/result.hpp"
 
 namespace curlidar::compact {
+
+struct LearntModels;
 
 struct ScanLimits {
   /// Rows * columns; at most 2^31 - 1 in any case. Checked before anything is allocated; a decoder
@@ -99,6 +102,7 @@ struct DecodedScan {
   /// Of predicted scans: what warped surfaces lie over in each cell, as Prediction; else empty.
   std::vector<Plane> guide_planes;
   std::vector<std::int32_t> guide_source;
+  std::shared_ptr<const LearntModels> learnt;  ///< at the end of scans of one segment
   std::vector<DecodedLeaf> leaves;
   std::vector<DecodedSegment> segments;
   std::vector<Missing> missing;  ///< empty: all that was asked for is here

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "compact/leaf_flags.hpp"
+#include "compact/learnt_models.hpp"
 #include "compact/mask_coder.hpp"
 #include "compact/residual_coder.hpp"
 #include "compact/row_offsets.hpp"
@@ -230,15 +231,17 @@ SegmentScan decode_segment(const RowTable& table, const ScanParameters& paramete
   out.leaf.resize(place.cells(), -1);
   out.total_roots = root_count(parameters, place);
   if (!mask.present) return out;
+  std::shared_ptr<LearntModels> learnt;
+  if (parameters.bands * parameters.sectors == 1) learnt = std::make_shared<LearntModels>();
   out.mask_rows = decode_mask(mask.payload, mask_shape(table, place), mask.whole, out.occupied,
-                              guide ? &*guide : nullptr);
+                              guide ? &*guide : nullptr, learnt.get());
   std::fill(out.occupied.begin() + static_cast<std::ptrdiff_t>(out.mask_rows * place.columns),
             out.occupied.end(), std::uint8_t{0});
   if (out.mask_rows < place.rows || !field.present) return out;
 
   const Geometry geometry = geometry_of(table, place);
   FieldState state(geometry, out.occupied, field_settings(parameters), guide ? &*guide : nullptr);
-  DecodedField decoded = decode_field(state, field.payload, field.whole, keep_nodes);
+  DecodedField decoded = decode_field(state, field.payload, field.whole, keep_nodes, learnt.get());
   out.roots = decoded.complete_roots;
   forget_torn_root(state, out.roots);
   out.nodes = std::move(decoded.roots);
@@ -248,6 +251,7 @@ SegmentScan decode_segment(const RowTable& table, const ScanParameters& paramete
   }
   out.surface = std::move(state.surface);
   out.surfaces = std::move(state.surfaces);
+  out.learnt = std::move(learnt);
   return out;
 }
 

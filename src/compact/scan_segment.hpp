@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "compact/field_encoder.hpp"
@@ -23,6 +24,7 @@ struct SegmentScan {
   std::vector<PlacedSurface> surfaces;
   std::vector<DecodedLeaf> leaves;
   std::vector<Node> nodes;
+  std::shared_ptr<const LearntModels> learnt;  ///< of segments that are the whole image
   std::size_t mask_rows = 0, roots = 0, total_roots = 0, residual_rows = 0;
 };
 

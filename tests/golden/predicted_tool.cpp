@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// predicted_tool FOLDER: writes a street, two scans each predicted from the one before, and what
+// predicted_tool FOLDER: writes a street, three scans each predicted from the one before, and what
 // they decode to.
 #include <cstdint>
 #include <cstdio>
@@ -21,9 +21,9 @@ using namespace curlidar::compact;
 ScanSettings settings_of(std::uint32_t number) {
   ScanSettings settings;
   settings.steps = steps_for_step(kRangeUnit / 4);
-  if (number == 2) settings.steps.residual_step = settings.steps.step;
+  if (number >= 2) settings.steps.residual_step = settings.steps.step;
   settings.effort = 3;
-  settings.sectors = number == 2 ? 2 : 1;
+  settings.sectors = number == 3 ? 2 : 1;
   settings.bands = 1;
   settings.index = false;
   return settings;
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   DecodedScan before;
-  for (std::uint32_t number = 0; number < 3; ++number) {
+  for (std::uint32_t number = 0; number < 4; ++number) {
     const test::CompactScan street = test::integer_street(12, 72, 400 + 300 * number);
     ScanSettings settings = settings_of(number);
     PredictionHeader header;

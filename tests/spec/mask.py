@@ -121,15 +121,18 @@ class MaskDecoder:
     def _start(self, way):
         priors, visits, self.rate = WAYS[way]
         if priors:
-            models = prior_models(self.tables[0], self.models_of * CONTEXTS)
+            models, self.weights = self.known_before()
             self.models = [[p, min(v, visits)] for p, v in models]
-            self.weights = [clip(256 * w, -MOST_WEIGHT, MOST_WEIGHT)
-                            for w in weight_words(self.tables[1])]
         else:
             self.models = [[32768, 0] for _ in range(self.models_of * CONTEXTS)]
             usual, more = (5 << 20) // (4 * self.models_of), self.models_of - MODELS
             sets = SETS + (64 if more else 0)
             self.weights = ([usual] * 8 + [0] * (40 + self.more_cells) + [usual] * more) * sets
+
+    def known_before(self):
+        """Models and weights."""
+        return (prior_models(self.tables[0], self.models_of * CONTEXTS),
+                [clip(256 * w, -MOST_WEIGHT, MOST_WEIGHT) for w in weight_words(self.tables[1])])
 
     def _cell(self, around, contexts, cells, sets):
         models = [self.models[CONTEXTS * m + c]

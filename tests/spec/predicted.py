@@ -239,8 +239,10 @@ class Prediction:
 class Guide:
     """What a segment sees of a prediction."""
 
-    def __init__(self, prediction, row, column):
+    def __init__(self, prediction, row, column, before=None):
+        """before: mask and field of the reference, if both scans are one segment."""
         self.p, self.row, self.column = prediction, row, column
+        self.mask, self.field = before or (None, None)
 
     def _at(self, table, i, j, none):
         return table.get((self.row + i, self.column + j), none)
@@ -279,7 +281,7 @@ SIZES = {name: (*((84, 168, 420, 24) if name == "parent" else sizes), *MORE[name
 
 
 class GuidedModels:
-    def __init__(self):
+    def __init__(self, before=None):
         self.starts = {name: [0] * 6 for name in KINDS}
         models = sets = 0
         for table in (4, 0, 1, 2, 3, 5):
@@ -290,6 +292,10 @@ class GuidedModels:
         for name, (_, count) in KINDS.items():
             self.sets[name] = sets
             sets += count
+        if before:
+            self.models = [list(model) for model in before.models]
+            self.weights = list(before.weights)
+            return
         self.models = prior_models("predicted_field", models)
         self.weights = prior_weights("predicted_field_mix", 6 * sets, 65536 * 5 // 24)
 
@@ -297,7 +303,7 @@ class GuidedModels:
 class GuidedField(Field):
     def __init__(self, decoder, window, occupied, root_log2, smallest_leaf, cut, guide):
         self.guide = guide
-        self.guided = GuidedModels()
+        self.guided = GuidedModels(getattr(guide.field, "guided", None))
         self.decoder = decoder
         super().__init__(decoder, window, occupied, root_log2, smallest_leaf, cut)
 
@@ -430,6 +436,13 @@ class GuidedMask(MaskDecoder):
         self.guide, self.height = guide, rows
         super().__init__(data, rows, columns, turn, cut)
 
+    def known_before(self):
+        models, weights = super().known_before()
+        before = self.guide.mask
+        if isinstance(before, GuidedMask):
+            return before.models, list(before.weights)
+        return [*before.models, *models[len(before.models):]] if before else models, weights
+
     def _hint(self, what, i, j):
         if not 0 <= i < self.height:
             return 0
@@ -505,7 +518,10 @@ class PredictedScan(Scan):
             self.rays = Rays.times(found[RAYS], before.rays, p.columns)
 
     def _guide(self, place):
-        return Guide(self.prediction, place[0], place[1])
+        before = self.reference
+        whole = self._count() == before._count() == 1
+        return Guide(self.prediction, place[0], place[1],
+                     (before.last_mask, before.last_field) if whole else None)
 
     def _mask(self, chunk, place):
         return GuidedMask(chunk.payload, place[2], place[3], self.parameters.turn_columns,

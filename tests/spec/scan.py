@@ -96,6 +96,7 @@ class Scan:
                             p.first_column + column, columns, p.step)
         field = self._field(field_chunk, window, mask, place)
         _sound(field_chunk, field.complete, "field")
+        self.last_mask, self.last_field = mask, field  # for scans predicted from this one
         for (i, j), cell in field.known.items():
             range_ = clip(cell.range + self.offsets[row + i], 1, TOP)
             self.field[row + i][column + j] = self.range[row + i][column + j] = range_
