@@ -18,7 +18,12 @@ TOLD = ROOT / "bench/report/frame/told.py"
 STATISTICS = {"count": 9, "mean": .04, "std": .1, "rms": .2, "p50": .05, "p95": .3, "max": 1.}
 COMPARED = {"a_to_b": STATISTICS, "b_to_a": STATISTICS, "points_b": 500, "symmetric": {"mean": .05},
             "matches": [{"threshold": each, "precision": .9, "recall": .96, "f_score": .93}
-                        for each in (.05, .1, .2)]}
+                        for each in (.05, .1, .2)],
+            "accuracy": {"mean": .05, "within": [{"threshold": each, "share": .9}
+                                                 for each in (.05, .1, .2)]},
+            "completeness": {"mean": .04, "within": [{"threshold": each, "share": .96}
+                                                     for each in (.05, .1, .2)]},
+            "f_scores": [{"threshold": each, "f_score": .93} for each in (.05, .1, .2)]}
 SINGLE, PREDICTED = 1000, 700
 MAP_BYTES = {"lap one": 5000, "lap two appended": 5400, "both laps at once": 6000}
 

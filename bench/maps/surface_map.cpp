@@ -4,8 +4,8 @@
 // footprint leaf root (settings), bare full curves intensity, every min max (scans, metres), tile
 // (side, m), voxel (of the union, m), spacing (of the map's points, m), queries.
 //
-// Prints bytes, mean distance from points to map (at most 1 m each), and shares within 5, 10, 20 cm
-// both ways with their F scores.
+// Prints bytes, mean distance from raw points to the map's surface (at most 1 m each), and shares
+// within 5, 10, 20 cm both ways (from the map: its points) with their F scores: as `map compare`.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -24,6 +24,7 @@
 #include "curlidar/io.hpp"
 #include "curlidar/motion.hpp"
 #include "map/sample_grid.hpp"
+#include "map/surface_distance.hpp"
 #include "map/surface_tile.hpp"
 #include "map/tile_points.hpp"
 
@@ -49,7 +50,43 @@ using Tree =
 struct Distances {
   double mean = 0;
   std::array<double, 3> within{};  ///< 5, 10, 20 cm
+
+  void add(double d) {
+    constexpr double kLimits[] = {0.05, 0.1, 0.2};
+    mean += d;
+    for (std::size_t l = 0; l < 3; ++l) within[l] += d < kLimits[l] ? 1 : 0;
+  }
+  void divide(std::size_t n) {
+    mean /= static_cast<double>(n);
+    for (double& share : within) share /= static_cast<double>(n);
+  }
 };
+
+/// Spread over all points, without a pattern.
+std::size_t pick(std::size_t k, std::size_t points) {
+  return (k * 2654435761u) % points;
+}
+
+/// Of points to a surface of many tiles.
+Distances distances(const Points& from, const MapTile& surface, std::size_t queries) {
+  Distances out;
+  const tile::SurfaceDistance to(surface, 1.0);
+  const std::size_t n = std::min(queries, from.at.size());
+  for (std::size_t k = 0; k < n; ++k) out.add(to.of(from.at[pick(k, from.at.size())]));
+  out.divide(std::max<std::size_t>(n, 1));
+  return out;
+}
+
+/// Puts a tile beside others.
+void join(const MapTile& tile, const Vec3& corner, MapTile& all) {
+  for (MapLeaf leaf : tile.leaves) {
+    leaf.centre = leaf.centre + corner;
+    leaf.height_m += leaf.axis == 0 ? corner.x : leaf.axis == 1 ? corner.y : corner.z;
+    leaf.first_cell += all.footprint.size();
+    all.leaves.push_back(leaf);
+  }
+  all.footprint.insert(all.footprint.end(), tile.footprint.begin(), tile.footprint.end());
+}
 
 Distances distances(const Points& from, const Points& to, std::size_t queries) {
   Distances out;
@@ -57,19 +94,14 @@ Distances distances(const Points& from, const Points& to, std::size_t queries) {
   const Tree tree(3, to, nanoflann::KDTreeSingleIndexAdaptorParams(16));
   const std::size_t n = std::min(queries, from.at.size());
   for (std::size_t k = 0; k < n; ++k) {
-    // Spread over all points, without a pattern.
-    const std::size_t i = (k * 2654435761u) % from.at.size();
+    const std::size_t i = pick(k, from.at.size());
     const double query[3] = {from.at[i].x, from.at[i].y, from.at[i].z};
     std::uint32_t index = 0;
     double squared = 0;
     tree.knnSearch(query, 1, &index, &squared);
-    const double d = std::min(std::sqrt(squared), 1.0);
-    out.mean += d;
-    constexpr double kLimits[] = {0.05, 0.1, 0.2};
-    for (std::size_t l = 0; l < 3; ++l) out.within[l] += d < kLimits[l] ? 1 : 0;
+    out.add(std::min(std::sqrt(squared), 1.0));
   }
-  out.mean /= static_cast<double>(n);
-  for (double& share : out.within) share /= static_cast<double>(n);
+  out.divide(n);
   return out;
 }
 
@@ -103,7 +135,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::map<std::string, double> options = {
-      {"step", 0.1},       {"bit", 0.15},       {"bare", 60}, {"full", 25},  {"drop", 0.3},
+      {"step", 0.1},       {"bit", 0.15},      {"bare", 60}, {"full", 25},  {"drop", 0.3},
       {"footprint", 0.25}, {"leaf", 0.25},     {"root", 4},  {"curves", 0}, {"intensity", 0},
       {"every", 1},        {"min", 2.5},       {"max", 80},  {"tile", 32},  {"voxel", 0.05},
       {"spacing", 0.05},   {"queries", 60000}, {"first", 0}};
@@ -160,6 +192,7 @@ int main(int argc, char** argv) {
   std::size_t bytes = 0, leaves = 0, samples = 0;
   double encode_time = 0, decode_time = 0;
   Points map_points;
+  MapTile surface;
   for (const auto& [key, grid] : grids) {
     double start = seconds();
     const auto tile_samples = grid.samples();
@@ -175,13 +208,14 @@ int main(int argc, char** argv) {
     }
     bytes += coded->size();
     leaves += tile->leaves.size();
+    join(*tile, {key.x * side, key.y * side, 0}, surface);
     for (const MapSample& sample : tile_points(*tile, options["spacing"])) {
       map_points.at.push_back(
           {sample.position.x + key.x * side, sample.position.y + key.y * side, sample.position.z});
     }
   }
   const auto queries = static_cast<std::size_t>(options["queries"]);
-  const Distances there = distances(raw, map_points, queries),
+  const Distances there = distances(raw, surface, queries),
                   back = distances(map_points, raw, queries);
   const auto f = [&](std::size_t l) {
     const double sum = there.within[l] + back.within[l];

@@ -4,14 +4,13 @@ from frame.cells import Missing
 from frame.context import Inside
 from frame.tables import Column, Figure, Table, rows_or
 from sections import goals, maps_inputs
-from sections.maps_inputs import (appended, at, built, compared, extracted, told_by)
+from sections.maps_inputs import appended, built, f_score, on_surface, share, told_by
 from sections.maps_surface import SPACING_M, shown
 
 SENSOR, QUICK_SENSOR = "hdl64e-kitti", "vlp16"
 SCANS, QUICK_SCANS = 240, 8  # of two laps
 LAPS = 2
 PARTS = (.25, .5, 1, 2)      # laps whose builds are measured
-FAR_M = .3                   # map farther than this from the truth is a ghost
 MEMORY_GROWTH = 1.25         # that peaks may have from half a lap to two laps
 FIGURE = "maps-length"
 
@@ -41,16 +40,17 @@ def row_of(context, drive, name, folder, seen):
     if "failure" in told:
         return {"map": name, "failure": told["failure"]}
     truth = Inside(drive.scans[0].folder, "truth.ply")
-    line = compared(context, {"drive": drive.name, "distances": name}, truth,
-                    extracted(context, folder, "--spacing", f"{SPACING_M:g}"))
+    line = on_surface(context, {"drive": drive.name, "to its surface": name}, truth, folder,
+                      SPACING_M)
     if "failure" in line:
         return {"map": name, "failure": line["failure"]}
     size = told["files"]["map.curl"]
     return {"map": name, "scans": seen.count, "length_m": maps_inputs.length_m(context, seen),
             "bytes": size, "metre": size / maps_inputs.length_m(context, seen),
-            "mean_m": line["a_to_b"]["mean"], "within_10": at(line, .1)["recall"],
-            "accuracy": at(line, .1)["precision"], "f10": at(line, .1)["f_score"],
-            "ghosts": 1 - at(line, .2)["precision"], "cpu_s": told["cpu_s"],
+            "mean_m": line["completeness"]["mean"],
+            "within_10": share(line["completeness"], .1),
+            "accuracy": share(line["accuracy"], .1), "f10": f_score(line, .1),
+            "ghosts": 1 - share(line["accuracy"], .2), "cpu_s": told["cpu_s"],
             "scans_a_second": Missing("appended") if "appended" in name else
             seen.count / told["cpu_s"]}
 
@@ -96,8 +96,8 @@ def tables(drive_rows, memory):
     none = "no simulated scenes in this run"
     return [Table(
         "maps-drive", "A simulated drive of two laps",
-        "the map as points every 5 cm, beside points of the exact surface of what does not move, "
-        "where the scans have seen it.", COLUMNS,
+        "points of the exact surface of what does not move, where the scans have seen it, to the "
+        "map's surface, and points of the map every 5 cm back to them (`map compare`).", COLUMNS,
         rows_or([shown(row, COLUMNS) for row in drive_rows], COLUMNS, none)), Table(
             "maps-memory", "Builds of parts of it",
             "one `map build` each, one thread; peak memory is that of the process as the system "

@@ -12,6 +12,7 @@ FRAME = Path(__file__).resolve().parents[1] / "frame"
 POSES, TOLD = FRAME / "poses.py", FRAME / "told.py"
 REFINED = "poses_lidar_refined_0-15.txt"
 NEAREST_M, FARTHEST_M = 2.5, 80  # of the returns that count
+EVERY_POINT = 100_000_000        # no random subset
 
 
 @dataclass(frozen=True)
@@ -98,6 +99,26 @@ def compared(context, key, reference, cloud):
     return context.measure("maps", key, [
         context.curlidar, "compare", reference, cloud, "--thresholds", "0.05,0.1,0.2", "--json",
         "--threads", "1", "--quiet"])[0]
+
+
+def on_surface(context, key, reference, folder, spacing_m):
+    """`map compare`: every point of the reference to the map's surface, and points of the map to the
+    reference."""
+    return context.measure("maps", key, [
+        context.curlidar, "map", "compare", map_of(folder), reference, "--spacing", f"{spacing_m:g}",
+        "--max-points", str(EVERY_POINT), "--max-reference", str(EVERY_POINT), "--json",
+        "--threads", "1", "--quiet"])[0]
+
+
+def share(distances, threshold_m):
+    """Of distances that `map compare` tells, those within one."""
+    return next(each["share"] for each in distances["within"]
+                if abs(each["threshold"] - threshold_m) < 1e-9)
+
+
+def f_score(line, threshold_m):
+    return next(each["f_score"] for each in line["f_scores"]
+                if abs(each["threshold"] - threshold_m) < 1e-9)
 
 
 def at(line, threshold_m):

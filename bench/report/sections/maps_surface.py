@@ -3,7 +3,7 @@
 from frame.cells import Missing
 from frame.tables import Column, Table, rows_or
 from sections import goals, maps_inputs
-from sections.maps_inputs import at, built, compared, extracted, told_by, union
+from sections.maps_inputs import built, f_score, on_surface, share, told_by, union
 
 SPACING_M = .05
 FINE_M = 40          # range of the fine map and of what it is compared with
@@ -13,7 +13,7 @@ FINE = ("--quality", "fine", "--max-range", str(FINE_M))
 MAPS = (("small", SMALL, 80), ("small, every 2nd scan", (*SMALL, "--every", "2"), 80),
         ("fine", FINE, FINE_M), ("fine, 80 m", FINE[:2], 80))
 CURVE = tuple((f"fine, {weight:g} m a bit", (*FINE, "--metres-per-bit", f"{weight:g}"), FINE_M)
-              for weight in (.1, .03, .02, .01))
+              for weight in (.1, .07, .03, .02))
 
 
 def row_of(context, drive, name, options, range_m):
@@ -21,17 +21,17 @@ def row_of(context, drive, name, options, range_m):
     told = told_by(context, "maps", {"map of": drive.name, "built": name}, folder)
     if "failure" in told:
         return {"map": name, "failure": told["failure"]}
-    cloud = extracted(context, folder, "--spacing", f"{SPACING_M:g}")
-    line = compared(context, {"map of": drive.name, "distances": name},
-                    union(context, drive, range_m), cloud)
+    line = on_surface(context, {"map of": drive.name, "to its surface": name},
+                      union(context, drive, range_m), folder, SPACING_M)
     if "failure" in line:
         return {"map": name, "failure": line["failure"]}
     return {"map": name, "options": " ".join(options) or "none", "bytes": told["files"]["map.curl"],
             "metre": told["files"]["map.curl"] / maps_inputs.length_m(context, drive),
-            "mean_m": line["a_to_b"]["mean"],
-            "within_5": at(line, .05)["recall"], "within_10": at(line, .1)["recall"],
-            "accuracy": at(line, .1)["precision"],
-            "f5": at(line, .05)["f_score"], "f10": at(line, .1)["f_score"],
+            "mean_m": line["completeness"]["mean"],
+            "within_5": share(line["completeness"], .05),
+            "within_10": share(line["completeness"], .1),
+            "accuracy": share(line["accuracy"], .1),
+            "f5": f_score(line, .05), "f10": f_score(line, .1),
             "cpu_s": told["cpu_s"]}
 
 
@@ -72,7 +72,8 @@ def table(found):
     return Table(
         "maps-surface", "Surface maps of KITTI 00, frames 0 to 15",
         "every raw return from 2.5 m to 80 m (to 40 m where --max-range says so) of all 16 scans, "
-        "moved by the refined poses; the map as points every 5 cm (`map extract --spacing 0.05`).",
+        "moved by the refined poses, to the map's surface; back from points of the map every 5 cm "
+        "(`map compare`).",
         COLUMNS, rows_or([shown(row, COLUMNS) for row in found], COLUMNS,
                          "no drive of real scans with poses in this run"))
 
