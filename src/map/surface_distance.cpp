@@ -2,6 +2,7 @@
 #include "map/surface_distance.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "map/tile_points.hpp"
@@ -26,19 +27,22 @@ std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
 }  // namespace
 
 SurfaceDistance::SurfaceDistance(const MapTile& surface, double most_m)
-    : surface_(surface), most_m_(most_m), edge_m_(std::max(most_m, 1.0)) {
+    : surface_(surface), most_m_(most_m) {
   for (std::size_t i = 0; i < surface.leaves.size(); ++i) {
     const MapLeaf& leaf = surface.leaves[i];
+    Size& size = sizes_[leaf.size_m];
+    // No smaller than a leaf: it reaches into few.
+    size.edge_m = leaf.size_m + most_m;
     std::array<std::int64_t, 3> low{}, high{};
     for (std::size_t k = 0; k < 3; ++k) {
       const double reach = leaf.size_m / 2 + most_m;
-      low[k] = number(along(leaf.centre, k) - reach, edge_m_);
-      high[k] = number(along(leaf.centre, k) + reach, edge_m_);
+      low[k] = number(along(leaf.centre, k) - reach, size.edge_m);
+      high[k] = number(along(leaf.centre, k) + reach, size.edge_m);
     }
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          leaves_[key(x, y, z)].push_back(static_cast<std::uint32_t>(i));
+          size.leaves[key(x, y, z)].push_back(static_cast<std::uint32_t>(i));
         }
       }
     }
@@ -47,11 +51,13 @@ SurfaceDistance::SurfaceDistance(const MapTile& surface, double most_m)
 
 double SurfaceDistance::of(const Vec3& p) const {
   double least = most_m_;
-  const auto found =
-      leaves_.find(key(number(p.x, edge_m_), number(p.y, edge_m_), number(p.z, edge_m_)));
-  if (found == leaves_.end()) return least;
-  for (const std::uint32_t leaf : found->second) {
-    least = std::min(least, of(surface_.leaves[leaf], p, least));
+  for (const auto& [edge, size] : sizes_) {
+    const auto found = size.leaves.find(
+        key(number(p.x, size.edge_m), number(p.y, size.edge_m), number(p.z, size.edge_m)));
+    if (found == size.leaves.end()) continue;
+    for (const std::uint32_t leaf : found->second) {
+      least = std::min(least, of(surface_.leaves[leaf], p, least));
+    }
   }
   return least;
 }

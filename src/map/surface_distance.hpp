@@ -2,8 +2,8 @@
 // How far points are from a tile's surface. Encoder only: + - * / and sqrt alone.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <map>
 #include <unordered_map>
 #include <vector>
 
@@ -11,7 +11,7 @@
 
 namespace curlidar::tile {
 
-/// Some bytes for each leaf and cube of a metre or so that it reaches into.
+/// 200 bytes or so for each leaf.
 class SurfaceDistance {
  public:
   /// `surface` must outlive it; distances are told up to `most_m`.
@@ -24,9 +24,15 @@ class SurfaceDistance {
  private:
   double of(const MapLeaf& leaf, const Vec3& p, double most_m) const;
 
+  /// Leaves of one size by the cubes that they reach into.
+  struct Size {
+    double edge_m = 1;
+    std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> leaves;
+  };
+
   const MapTile& surface_;
-  double most_m_, edge_m_;
-  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> leaves_;  ///< by cube
+  double most_m_;
+  std::map<double, Size> sizes_;
 };
 
 }  // namespace curlidar::tile

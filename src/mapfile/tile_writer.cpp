@@ -64,6 +64,8 @@ class TileMaker {
   /// An old tile with what is new in it.
   Result<ReadyTile> made_longer(TileKey key, std::size_t old,
                                 const std::vector<MapSample>& samples) const {
+    // Reading the tile finds what is wrong with it.
+    CURLIDAR_TRY(old_->read_tile(old));
     CURLIDAR_TRY_ASSIGN(part, old_->read_part(old));
     CURLIDAR_TRY_ASSIGN(parts, read_tile_part(part, "a tile"));
     CURLIDAR_TRY_ASSIGN(longer, append_surface_tile(parts.tile, samples, header_.surface));
