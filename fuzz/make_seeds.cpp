@@ -2,11 +2,8 @@
 // Writes the inputs that fuzzing starts from: small simulated scans, encoded in many ways.
 //   make_seeds FOLDER    makes FOLDER/TARGET/seed-NAME for every target but cloud
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
 #include <string>
-#include <utility>
 
 #include "codec/compact_decode.hpp"
 #include "compact/mask_coder.hpp"
@@ -22,6 +19,7 @@
 #include "hostile/targets/points.hpp"
 #include "hostile/targets/residual.hpp"
 #include "hostile/targets/scan.hpp"
+#include "seeds.hpp"
 #include "support/promised_clouds.hpp"
 #include "support/ray_tables.hpp"
 #include "support/record_chunks.hpp"
@@ -29,28 +27,6 @@
 namespace curlidar::fuzz {
 namespace {
 
-using Bytes = std::vector<std::byte>;
-
-class Seeds {
- public:
-  explicit Seeds(std::filesystem::path folder) : folder_(std::move(folder)) {}
-
-  void write(const std::string& target, const std::string& name, const Bytes& bytes) const {
-    std::filesystem::create_directories(folder_ / target);
-    std::ofstream file(folder_ / target / ("seed-" + name), std::ios::binary);
-    for (const std::byte b : bytes) file.put(static_cast<char>(b));
-  }
-
- private:
-  std::filesystem::path folder_;
-};
-
-void append(Bytes& to, ByteSpan bytes) {
-  to.insert(to.end(), bytes.begin(), bytes.end());
-}
-void append(Bytes& to, std::initializer_list<std::size_t> numbers) {
-  for (const std::size_t number : numbers) to.push_back(static_cast<std::byte>(number & 0xff));
-}
 Bytes packed(const std::vector<std::uint8_t>& flags) {
   Bytes bits((flags.size() + 7) / 8);
   for (std::size_t i = 0; i < flags.size(); ++i) {
@@ -352,6 +328,7 @@ void write_all(const Seeds& seeds) {
     write_fields(seeds, scene, scan.image);
     write_residuals(seeds, scene, scan.image);
   }
+  write_drive_seeds(seeds);
   seeds.write("container", "every-chunk", test::whole_file());
 }
 

@@ -10,6 +10,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
+#include "curlidar/map.hpp"
 #include "curlidar/sequence.hpp"
 
 namespace curlidar::app {
@@ -187,10 +188,27 @@ DecodedScan load_scan_of_sequence(const std::string& path, DecodeOptions options
 
 }  // namespace
 
+void refuse_many(const std::string& path, std::span<const std::byte> bytes) {
+  const std::string name = path == "-" ? "standard input" : path;
+  if (is_map(bytes)) {
+    throw Failure({ErrorCode::unsupported,
+                   fmt::format("{}: this is a map, not a scan: 'curlidar map extract' makes a "
+                               "cloud of it, 'curlidar map --help' tells what else",
+                               name)},
+                  kExitInput);
+  }
+  if (is_sequence(bytes)) {
+    throw Failure({ErrorCode::unsupported,
+                   fmt::format("{}: this is a sequence, which is read from a file only", name)},
+                  kExitInput);
+  }
+}
+
 DecodedScan load_curl(const std::string& path, const DecodeOptions& options,
                       const std::optional<std::size_t>& scan) {
   if (path != "-" && is_sequence_file(path)) return load_scan_of_sequence(path, options, scan);
   const std::vector<std::byte> bytes = need(read_file(path));
+  refuse_many(path, bytes);
   return need(decode(bytes, options));
 }
 
@@ -202,6 +220,7 @@ Cloud load_cloud(const std::string& path, const std::optional<CloudFormat>& form
   }
   const std::vector<std::byte> bytes = need(read_file(path));
   if (!format && is_curl(bytes)) {
+    refuse_many(path, bytes);
     return need(reconstruct(need(decode(bytes)), reconstruct_settings));
   }
   ReadOptions options;

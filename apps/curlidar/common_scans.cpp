@@ -12,27 +12,33 @@ namespace curlidar::app {
 namespace fs = std::filesystem;
 namespace {
 
-bool is_scan_name(const std::string& path) {
-  return path.ends_with(".curl") || cloud_format_by_extension(path).has_value();
+bool is_hidden(const fs::path& path) {
+  return path.filename().string().front() == '.';
 }
 
-/// Text files beside scans (poses.txt, times.txt) are no scans of a directory.
-bool is_listed(const fs::path& path) {
-  return path.filename().string().front() != '.' && path.extension() != ".txt" &&
-         path.extension() != ".csv" && is_scan_name(path.string());
-}
-
-void list_directory(const std::string& folder, std::vector<std::string>& out) {
+/// Files with points. Of text a scan may be, too, but text beside other scans is times and poses.
+std::vector<std::string> names_in(const std::string& folder) {
   std::error_code error;
-  std::vector<std::string> names;
+  std::vector<std::string> names, tables;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
-    if (is_listed(at->path()) && !at->is_directory()) names.push_back(at->path().string());
+    const fs::path& path = at->path();
+    if (is_hidden(path) || at->is_directory() || path.extension() == ".txt") continue;
+    if (path.extension() == ".csv") {
+      tables.push_back(path.string());
+    } else if (path.extension() == ".curl" || cloud_format_by_extension(path.string())) {
+      names.push_back(path.string());
+    }
   }
   if (error) {
     throw Failure(
         {ErrorCode::io, fmt::format("{}: cannot list this directory: {}", folder, error.message())},
         kExitFile);
   }
+  return names.empty() ? tables : names;
+}
+
+void list_directory(const std::string& folder, std::vector<std::string>& out) {
+  std::vector<std::string> names = names_in(folder);
   if (names.empty()) {
     throw Failure({ErrorCode::not_found, folder + ": no scan in this directory"}, kExitFile);
   }

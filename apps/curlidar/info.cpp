@@ -10,8 +10,10 @@
 #include "commands.hpp"
 #include "common_compact.hpp"
 #include "common_inputs.hpp"
+#include "common_maps.hpp"
 #include "curlidar/sequence.hpp"
 #include "info_sequence.hpp"
+#include "map.hpp"
 
 namespace curlidar::app {
 namespace {
@@ -20,13 +22,14 @@ constexpr const char* kFooter = R"(Examples:
   curlidar info scan.bin                        what --sensor auto sees
   curlidar info scan.pcd --sensor os1-64        the same scan through a given profile
   curlidar info scan.curl --json
-  curlidar info drive.curl --poses-out poses.txt   every scan of a sequence, and its poses)";
+  curlidar info drive.curl --poses-out poses.txt   every scan of a sequence, and its poses
+  curlidar info map.curl                        as 'curlidar map info')";
 
 struct Options {
   CommonOptions common;
   std::vector<std::string> inputs;
   std::string format, sensor = "auto";
-  std::string poses_out, times_out;
+  SequenceInfoOptions sequence;
 };
 
 double degrees(double radians) {
@@ -391,20 +394,25 @@ Outcome describe_curl(const Job& job, std::span<const std::byte> bytes, std::siz
 int run(const Options& options) {
   const auto sensor = parse_sensor(options.sensor);
   parse_format(options.format);  // said wrongly, it is a matter of usage
-  const bool writes = !options.poses_out.empty() || !options.times_out.empty();
+  const SequenceInfoOptions& sequence = options.sequence;
+  const bool writes = !sequence.poses_out.empty() || !sequence.times_out.empty();
   if (writes && (options.inputs.size() != 1 || !is_sequence_file(options.inputs.front()))) {
     usage_error("--poses-out and --times-out write what one sequence holds");
   }
-  return for_each_job(options.common, plan_jobs(options.inputs),
-                      [&](const Job& job, const ProgressCallback&) {
-                        if (job.input != "-" && is_sequence_file(job.input)) {
-                          return describe_sequence(job.input, options.poses_out, options.times_out);
-                        }
-                        const std::vector<std::byte> bytes = need(read_file(job.input));
-                        return options.format.empty() && is_curl(bytes)
-                                   ? describe_curl(job, bytes, options.common.threads)
-                                   : describe_scan(job, bytes, options, sensor);
-                      });
+  return for_each_job(
+      options.common, plan_jobs(options.inputs), [&](const Job& job, const ProgressCallback&) {
+        if (job.input != "-" && is_sequence_file(job.input)) {
+          return describe_sequence(job.input, sequence);
+        }
+        if (job.input != "-" && is_map_file(job.input)) {
+          return map_outcome(job.input, load_map(job.input, sequence.allow_truncated));
+        }
+        const std::vector<std::byte> bytes = need(read_file(job.input));
+        refuse_many(job.input, bytes);
+        return options.format.empty() && is_curl(bytes)
+                   ? describe_curl(job, bytes, options.common.threads)
+                   : describe_scan(job, bytes, options, sensor);
+      });
 }
 
 }  // namespace
@@ -418,11 +426,14 @@ Command add_info(CLI::App& root) {
   app->add_option("--sensor", options->sensor, kSensorHelp)->capture_default_str();
   app->add_option("--format", options->format,
                   fmt::format("Format of the input: {}; default by content", kFormatNames));
-  app->add_option("--poses-out", options->poses_out,
+  app->add_option("--poses-out", options->sequence.poses_out,
                   "Of a sequence with poses: write them, as .csv, .tum or KITTI's lines")
       ->type_name("FILE");
-  app->add_option("--times-out", options->times_out, "Of a sequence with times: write them")
+  app->add_option("--times-out", options->sequence.times_out,
+                  "Of a sequence with times: write them")
       ->type_name("FILE");
+  app->add_flag("--allow-truncated", options->sequence.allow_truncated,
+                "Take sequences and maps that are cut off as far as they go");
   add_common_options(*app, options->common);
   return {app, [options] { return run(*options); }};
 }

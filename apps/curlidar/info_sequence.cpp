@@ -72,6 +72,12 @@ Listing list_scans(SequenceFile& sequence) {
   listing.table.add(
       {"scan", "time, s", "kind", "group", "size", "points", "bits a point", "sensor at, m"});
   for (const SequencePart& group : sequence.groups()) {
+    if (group.scans == 0) {  // of a damaged group without an index nobody knows how many
+      listing.damaged.push_back({{"first_scan", group.first_scan},
+                                 {"scans", nullptr},
+                                 {"error", fmt::format("a group of {} bytes after scan {}",
+                                                       group.bytes, group.first_scan)}});
+    }
     for (std::uint64_t i = 0; i < group.scans; ++i) {
       const auto number = static_cast<std::size_t>(group.first_scan + i);
       const auto scan = sequence.scan(number);
@@ -112,9 +118,10 @@ void write_stamps(const std::string& path, const Listing& listing, const std::st
 
 }  // namespace
 
-Outcome describe_sequence(const std::string& path, const std::string& poses_out,
-                          const std::string& times_out) {
-  SequenceFile sequence = need(SequenceFile::open(path));
+Outcome describe_sequence(const std::string& path, const SequenceInfoOptions& options) {
+  SequenceReadOptions reading;
+  reading.allow_truncated = options.allow_truncated;
+  SequenceFile sequence = need(SequenceFile::open(path, reading));
   const Listing listing = list_scans(sequence);
   std::string text = fmt::format("{}\n", path);
   const auto line = [&](const char* key, const std::string& value) {
@@ -132,7 +139,8 @@ Outcome describe_sequence(const std::string& path, const std::string& poses_out,
   for (const Json& group : listing.damaged) {
     text += fmt::format("DAMAGED: {}\n", group["error"].get<std::string>());
   }
-  write_stamps(path, listing, poses_out, times_out);
+  for (const std::string& missing : sequence.missing()) text += "MISSING: " + missing + "\n";
+  write_stamps(path, listing, options.poses_out, options.times_out);
   const Json json = {{"kind", "sequence"},
                      {"scans", sequence.scans()},
                      {"predicted", listing.predicted},
@@ -143,8 +151,10 @@ Outcome describe_sequence(const std::string& path, const std::string& poses_out,
                      {"bytes", sequence.bytes()},
                      {"bits_per_point", bits},
                      {"frames", listing.scans},
-                     {"damaged", listing.damaged}};
-  return {json, text, listing.damaged.empty() ? kExitOk : kExitInput};
+                     {"damaged", listing.damaged},
+                     {"missing", sequence.missing()}};
+  const bool whole = listing.damaged.empty() && sequence.missing().empty();
+  return {json, text, whole ? kExitOk : kExitInput};
 }
 
 }  // namespace curlidar::app

@@ -85,6 +85,7 @@ int verify_file(const Options& options, const ReadOptions& reading) {
   if (options.file == "-" && scan == "-") usage_error("only one of them can be '-'");
   const Cloud cloud = need(read_cloud(scan, reading));
   const auto bytes = need(read_file(options.file));
+  refuse_many(options.file, bytes);
   Result<Verification> result = verify(bytes, cloud, options.common.threads);
   if (!result) {
     throw Failure({result.error().code, options.file + ": " + result.error().message}, kExitInput);

@@ -148,8 +148,11 @@ Result<IndexedFile> open_indexed(std::shared_ptr<const RandomAccess> source, boo
                              source->name())};
   }
   if (kind == IndexedKind::sequence) {
-    return Error{ErrorCode::invalid_argument,
-                 fmt::format("{}: a sequence of scans, not a map", source->name())};
+    return Error{
+        ErrorCode::invalid_argument,
+        fmt::format("{}: a sequence of scans, not a map; 'curlidar decode' gives its scans, "
+                    "'curlidar map build' makes a map of them",
+                    source->name())};
   }
   IndexedOptions options;
   options.allow_truncated = allow_truncated;

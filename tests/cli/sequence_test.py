@@ -119,6 +119,18 @@ class SequenceTest(CommandTest):
         self.run_fail(USAGE, "render", "scans/001.pcd", "--scan", 1, "-o", "x.png", says=["--scan"])
         self.run_fail(USAGE, "decode", "one.curl", "--scan", 1, says=["--scan"])
 
+    def test_maps_and_sequences_are_told_apart(self):
+        self.ok("map", "build", "drive.curl", "-o", "map.curl", "-q")
+        for words in (("decode", "map.curl"), ("render", "map.curl", "-o", "x.png"),
+                      ("compare", "scans/001.pcd", "map.curl"),
+                      ("verify", "map.curl", "scans/001.pcd")):
+            self.run_fail(INPUT, *words, says=["map.curl", "this is a map", "map extract"])
+        self.assertEqual(self.run_json("info", "map.curl")["scans"], SCANS)
+        self.run_fail(INPUT, "map", "info", "drive.curl", says=["sequence", "curlidar decode"])
+        self.run_fail(USAGE, "map", "build", "exact.curl", "-o", "x.curl", says=["--poses"])
+        self.run_fail(INPUT, "decode", "-", stdin=self.path("drive.curl").read_bytes(),
+                      says=["sequence"])
+
     def test_threads_do_not_change_bytes(self):
         self.ok("encode", "scans", "--sequence", "--group", GROUP, "--static", *QUICK_OPTIONS,
                 "--times", "times.txt", "--poses", "poses.txt", "-o", "threads.curl", "-q",
@@ -163,7 +175,11 @@ class SequenceTest(CommandTest):
         result = self.execute("decode", "cut.curl", "--allow-truncated", "-o", "cut/", "--json")
         self.assertEqual(result.returncode, INPUT)
         self.assertIn(b"cut.curl", result.stderr)
+        listed = self.execute("info", "cut.curl", "--allow-truncated", "--json")
+        self.assertEqual(listed.returncode, INPUT)
+        self.assertGreater(len(json.loads(listed.stdout)["missing"]), 0)
         done = sorted(self.path("cut").iterdir())
+        self.assertEqual(json.loads(listed.stdout)["scans"], len(done))
         self.assertTrue(GROUP <= len(done) < SCANS, done)
         for file in done:
             self.run_ok("decode", "drive.curl", "--scan", int(file.stem), "-o", "w.pcd", "-q")

@@ -17,10 +17,12 @@
 #include "hostile/targets/mask.hpp"
 #include "hostile/targets/points.hpp"
 #include "hostile/targets/poses.hpp"
+#include "hostile/targets/predicted.hpp"
 #include "hostile/targets/rays.hpp"
 #include "hostile/targets/records.hpp"
 #include "hostile/targets/residual.hpp"
 #include "hostile/targets/scan.hpp"
+#include "hostile/targets/sequence.hpp"
 #include "hostile/targets/surface.hpp"
 
 namespace curlidar {
@@ -46,7 +48,9 @@ constexpr Target kTargets[] = {{"container", test::container_target},
                                {"loose", test::loose_target},
                                {"corrections", test::corrections_target},
                                {"directions", test::directions_target},
-                               {"surface", test::surface_target}};
+                               {"surface", test::surface_target},
+                               {"predicted", test::predicted_target},
+                               {"sequence", test::sequence_target}};
 
 std::vector<std::byte> bytes_of(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);

@@ -37,8 +37,8 @@ def need(condition, what):
         raise Corrupt(what)
 
 
-class MapFile:
-    """A whole map: its header, and for each part where it lies, its size and its summary."""
+class IndexedFile:
+    """A whole file: its header, and for each part where it lies, its size and its summary."""
 
     KIND = None
 
@@ -60,6 +60,29 @@ class MapFile:
         need(after - begin == size and after == len(data) - 28, "the index lies elsewhere")
         self._index(index, first, begin)
 
+    def _index(self, payload, first, begin):
+        reader = Reader(payload)
+        self.entries, at = [], first
+        for _ in range(reader.varint()):
+            size = reader.varint()
+            summary = Reader(reader.bytes(reader.varint()))
+            self.entries.append((at, size, self.summary(summary)))
+            summary.end()
+            varint_bytes = max(1, (size.bit_length() + 6) // 7)
+            at += 1 + varint_bytes + size + 4
+        reader.end()
+        need(at == begin, "the index adds up to another place")
+
+    def part(self, number):
+        at, size, _ = self.entries[number]
+        payload, _ = expect(self.data, at, PART)
+        need(len(payload) == size, "a part of another size")
+        return payload
+
+
+class MapFile(IndexedFile):
+    """A map: what the headers of both kinds have."""
+
     def _header(self, payload):
         reader = Reader(payload)
         self.origin = numbers(reader, "3d")
@@ -79,22 +102,3 @@ class MapFile:
 
     def header_of_kind(self, reader):
         """What the header of this kind alone has."""
-
-    def _index(self, payload, first, begin):
-        reader = Reader(payload)
-        self.entries, at = [], first
-        for _ in range(reader.varint()):
-            size = reader.varint()
-            summary = Reader(reader.bytes(reader.varint()))
-            self.entries.append((at, size, self.summary(summary)))
-            summary.end()
-            varint_bytes = max(1, (size.bit_length() + 6) // 7)
-            at += 1 + varint_bytes + size + 4
-        reader.end()
-        need(at == begin, "the index adds up to another place")
-
-    def part(self, number):
-        at, size, _ = self.entries[number]
-        payload, _ = expect(self.data, at, PART)
-        need(len(payload) == size, "a part of another size")
-        return payload
