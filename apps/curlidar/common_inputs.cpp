@@ -12,6 +12,7 @@
 
 #include "curlidar/map.hpp"
 #include "curlidar/sequence.hpp"
+#include "one_scan.hpp"
 
 namespace curlidar::app {
 namespace fs = std::filesystem;

@@ -5,7 +5,6 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -56,8 +55,6 @@ using JobBody = std::function<Outcome(const Job&, const ProgressCallback&)>;
 /// Returns the exit code of the first failure.
 int for_each_job(const CommonOptions& common, const std::vector<Job>& jobs, const JobBody& body);
 
-/// Failure for files of many scans where one is wanted, with what to do instead.
-void refuse_many(const std::string& path, std::span<const std::byte> bytes);
 /// A cloud file, or a .curl file decoded at rows x columns times its own lattice. Of a sequence the
 /// given scan; Failure without one. `scan` means nothing to other files.
 Cloud load_cloud(const std::string& path, const std::optional<CloudFormat>& format,

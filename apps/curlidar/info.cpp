@@ -14,6 +14,7 @@
 #include "curlidar/sequence.hpp"
 #include "info_sequence.hpp"
 #include "map.hpp"
+#include "one_scan.hpp"
 
 namespace curlidar::app {
 namespace {

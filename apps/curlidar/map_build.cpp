@@ -162,7 +162,8 @@ Command add_map_build(CLI::App& map) {
   CLI::App* app = map.add_subcommand("build", "Make a map from scans with poses");
   app->footer(kBuildFooter);
   const auto options = std::make_shared<BuildOptions>();
-  app->add_option("scans", options->inputs.inputs, "Scans in order, or folders of them")
+  app->add_option("scans", options->inputs.inputs,
+                  "Scans in order, folders of them, or sequences, which may bring their poses")
       ->required();
   app->add_option("-o,--output", options->inputs.output, "The map")->required();
   add_map_inputs(*app, options->inputs);

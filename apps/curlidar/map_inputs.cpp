@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "map.hpp"
+#include "scan_source.hpp"
 
 namespace curlidar::app {
 namespace {
@@ -39,6 +40,22 @@ void check_files(const std::vector<std::string>& scans, const MapInputs& inputs,
   }
 }
 
+/// Those of --poses, or those that sequences bring along.
+PoseTrack poses_for(const PoseOptions& options, ScanSource& scans) {
+  if (!options.path.empty()) return load_poses(options, scans.size());
+  if (!scans.has_poses()) {
+    usage_error(
+        "--poses is needed, a pose for each scan; only sequences with poses bring their own");
+  }
+  PoseTrack track = load_poses(options, scans.size());
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const ScanStamp stamp = scans.stamp(i);
+    track.T_map_sensor.push_back(*stamp.T_map_sensor);
+    if (options.times.empty() && stamp.time_s) track.time_s.push_back(*stamp.time_s);
+  }
+  return track;
+}
+
 std::string report_text(const MapReport& report, const std::string& output, double travelled_m,
                         double seconds) {
   std::string text =
@@ -59,7 +76,6 @@ std::string report_text(const MapReport& report, const std::string& output, doub
 
 void add_map_inputs(CLI::App& app, MapInputs& inputs) {
   add_pose_options(app, inputs.poses);
-  app.get_option("--poses")->required();
   app.add_option("--format", inputs.format,
                  fmt::format("Format of the scans: {}; default by content", kFormatNames));
   app.add_option("--every", inputs.every,
@@ -89,10 +105,9 @@ void apply(const MapInputs& inputs, MapBuildSettings& settings) {
 Outcome build_map(const CommonOptions& common, const MapInputs& inputs, MapBuilder& builder,
                   const std::string& output) {
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<std::string> scans = list_scans(inputs.inputs);
-  check_files(scans, inputs, output);
-  const PoseTrack track = load_poses(inputs.poses, scans.size());
-  const auto format = parse_format(inputs.format);
+  check_files(list_scans(inputs.inputs), inputs, output);
+  ScanSource scans(inputs.inputs, {parse_format(inputs.format), common.threads});
+  const PoseTrack track = poses_for(inputs.poses, scans);
   ProgressBar bar(!common.quiet);
   for (std::size_t i = 0; i < scans.size(); ++i) {
     bar.update(0, 1, fmt::format("scan {} of {}", i + 1, scans.size()),
@@ -102,13 +117,14 @@ Outcome build_map(const CommonOptions& common, const MapInputs& inputs, MapBuild
       builder.skip(pose);
       continue;
     }
-    const Cloud cloud = load_cloud(scans[i], format);
+    const Cloud cloud = scans.cloud(i);
     std::optional<double> time_s;
-    if (!track.time_s.empty()) time_s = track.time_s[i];
+    if (track.time_s.size() == scans.size()) time_s = track.time_s[i];
     const auto added = builder.add_scan(cloud, pose, time_s);
     if (!added) {
-      throw Failure({added.error().code, fmt::format("{}: {}", scans[i], added.error().message)},
-                    exit_code_of(added.error().code));
+      throw Failure(
+          {added.error().code, fmt::format("{}: {}", scans.name(i), added.error().message)},
+          exit_code_of(added.error().code));
     }
   }
   const MapReport report =

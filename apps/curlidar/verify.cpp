@@ -12,6 +12,7 @@
 #include "common_inputs.hpp"
 #include "common_scans.hpp"
 #include "decode_sequence.hpp"
+#include "one_scan.hpp"
 
 namespace curlidar::app {
 namespace {
