@@ -11,7 +11,8 @@
 namespace curlidar::app {
 
 /// The files of a drive in order: a directory stands for the clouds and .curl files in it, sorted
-/// by name. Failure(kExitFile) if one is missing or a directory holds none.
+/// by name; .csv files only if there are no others. Failure(kExitFile) if one is missing or a
+/// directory holds none.
 std::vector<std::string> list_scans(const std::vector<std::string>& inputs);
 
 /// --poses, --calib, --times, --pose-format.

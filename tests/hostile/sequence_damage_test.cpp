@@ -57,8 +57,8 @@ TEST(SequenceDamage, WholeFilesAreGood) {
 
 TEST(SequenceDamage, ChangedBytes) {
   const auto bytes = quick_sequence();
-  for (std::size_t at = 0; at < bytes.size(); at += at < 80 || at + 60 > bytes.size() ? 1 : 9) {
-    for (const int change : {0x01, 0x80, 0xff}) {
+  for (std::size_t at = 0; at < bytes.size(); at += at < 60 || at + 50 > bytes.size() ? 2 : 29) {
+    for (const int change : {0x01, 0xff}) {
       auto damaged = bytes;
       damaged[at] ^= static_cast<std::byte>(change);
       ASSERT_EQ(test::sequence_target(damaged), "") << at << " " << change;
