@@ -175,7 +175,7 @@ class MapTest(CommandTest):
         folder = self.folder / "killed"
         folder.mkdir()
         old = self.path("street.curl").read_bytes()
-        self.write_poses("many.txt", [float(i) for i in range(20)])
+        self.write_poses("many.txt", [float(i) for i in range(10)])
         ended = 0
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL):
             for late in (False, True):
@@ -197,7 +197,7 @@ class MapTest(CommandTest):
         """Appends, and sends the signal soon or when the map is being written."""
         def listening():
             signal.signal(signal.SIGINT, signal.SIG_DFL)
-        with subprocess.Popen([CURLIDAR, "map", "append", str(target), *["scans"] * 10, "--poses",
+        with subprocess.Popen([CURLIDAR, "map", "append", str(target), *["scans"] * 5, "--poses",
                                "many.txt", "--quiet"], cwd=self.folder,
                               preexec_fn=listening) as process:
             begin = f".curlidar-{process.pid}-"
