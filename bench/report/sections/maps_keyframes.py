@@ -10,7 +10,7 @@ EVERY = 5  # scans to a keyframe
 COLUMNS_OF_GRID = 1024
 ROWS = 8
 OPTIONS = ("--kind", "scans", "--every", str(EVERY), "--min-range", "2.5", "--max-range", "80",
-           "--columns", str(COLUMNS_OF_GRID), "--error", "0.07")
+           "--columns", str(COLUMNS_OF_GRID))
 WAYS = (("keyframes, 8x rows", ("--rows", str(ROWS))), ("keyframes as coded", ()))
 
 
