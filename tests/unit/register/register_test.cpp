@@ -201,7 +201,6 @@ TEST(Register, KittiAgreesWithPosesMadeElsewhere) {
   const auto expected = read_poses(kitti + "poses_lidar_refined_0-15.txt");
   ASSERT_TRUE(expected);
   ScanMatcher matcher;
-  std::optional<RigidMotion> last;
   for (std::size_t k = 0; k < 4; ++k) {
     const auto cloud = read_cloud(kitti + "velodyne/00000" + std::to_string(k) + ".bin");
     ASSERT_TRUE(cloud);
@@ -210,7 +209,7 @@ TEST(Register, KittiAgreesWithPosesMadeElsewhere) {
     EXPECT_TRUE(result->trusted()) << result->doubt;
     expect_pose(result->T_target_source, expected->T_map_sensor[k], 0.02);
   }
-  // The fifth and a half metre further on, without a guess.
+  // Eight scans, some six metres, further on, without a guess.
   const auto first = read_cloud(kitti + "velodyne/000000.bin");
   const auto later = read_cloud(kitti + "velodyne/000008.bin");
   ASSERT_TRUE(first && later);
