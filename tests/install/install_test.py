@@ -19,7 +19,7 @@ CONSUMER = Path(__file__).resolve().parent / "consumer"
 
 def run(*command, **options):
     return subprocess.run([str(part) for part in command], stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, timeout=240, check=False, **options)
+                          stderr=subprocess.STDOUT, text=True, timeout=900, check=False, **options)
 
 
 class InstallTest(unittest.TestCase):
