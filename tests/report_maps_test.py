@@ -48,11 +48,6 @@ class MapsContext(FakeContext):
     """One that names what would be made."""
     curlidar, scratch = Path("curlidar"), Path("scratch")
 
-    knows = "--sequence build render"
-
-    def help_of(self, *_words):
-        return self.knows
-
     def made(self, ending, command):
         return Made(Path(str(abs(hash(tuple(map(str, command))))) + ending), tuple(command))
 
@@ -82,13 +77,6 @@ class MapsTest(unittest.TestCase):
         self.assertEqual(row["met"], "no, 100 % over")
         for row in table.rows:
             self.assertTrue(row["command"].startswith("curlidar "), row["goal"])
-
-    def test_what_the_command_does_not_know_is_missing(self):
-        context = MapsContext(answer, quick=True, scans=[])
-        context.knows = ""
-        tables = {table.id: table for table in maps.tables(context)}
-        self.assertEqual(set(tables), set(maps.TABLES))
-        self.assertIsInstance(tables["maps-goals"].rows[0]["measured"], Missing)
 
     def test_failures_are_in_the_tables(self):
         tables = self.tables(lambda key: [{"failure": "it broke"}] if "built" in key else answer(key),

@@ -108,13 +108,6 @@ class Context:
             self.curlidar, "simulate", "--scene", item.name, "--sensor", item.sensor, "--seed",
             str(item.seed), "--threads", "1", "--quiet", "-o", OUTPUT])
 
-    def help_of(self, *words):
-        """What the command says of itself; nothing of what it does not know."""
-        try:
-            return run.output_of([self.curlidar, *words, "--help"])
-        except run.CommandFailed:
-            return ""
-
     def published_rows(self, table, **wanted):
         """Rows of published.toml whose texts are as wanted. Numbers come as Published."""
         sources = self.published["sources"]

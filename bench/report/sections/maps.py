@@ -19,22 +19,16 @@ COMMANDS = {
 
 
 def measured(context):
-    """Rows of each table; what is stored is not measured again, what the command does not know is
-    left out."""
-    sequences = "--sequence" in context.help_of("encode")
-    maps = "build" in context.help_of("map")
-    return {"sequences": maps_sequences.rows(context) if sequences else [],
-            "surface": maps_surface.rows(context) if maps else [],
-            "keyframes": maps_keyframes.rows(context) if maps else [],
-            "drive": maps_drive.rows(context) if maps else [],
-            "memory": maps_drive.memory_rows(context) if maps else []}
+    """Rows of each table; what is stored is not measured again."""
+    return {"sequences": maps_sequences.rows(context), "surface": maps_surface.rows(context),
+            "keyframes": maps_keyframes.rows(context), "drive": maps_drive.rows(context),
+            "memory": maps_drive.memory_rows(context)}
 
 
 def measure(context):
     measured(context)
     from sections import maps_pictures  # needs numpy
-    if "render" in context.help_of("map"):
-        maps_pictures.measure(context)
+    maps_pictures.measure(context)
 
 
 def command_of(goal):
