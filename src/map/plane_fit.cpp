@@ -60,15 +60,7 @@ FitMoments robust_moments(const CubeSamples& cube, std::uint32_t axis, double ne
         const double off = std::abs(h - plane.height - plane.rise_u * u - plane.rise_v * v);
         if (off > near) w *= near / off;
       }
-      m.w += w;
-      m.u += w * u;
-      m.v += w * v;
-      m.uu += w * u * u;
-      m.uv += w * u * v;
-      m.vv += w * v * v;
-      m.h += w * h;
-      m.hu += w * h * u;
-      m.hv += w * h * v;
+      m.add(w, u, v, h);
     }
   }
   return m;

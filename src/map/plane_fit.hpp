@@ -14,6 +14,18 @@ namespace curlidar::tile {
 /// Weighted moments of the samples of a cube about its centre, u and v in half edges, h in ticks.
 struct FitMoments {
   double w = 0, u = 0, v = 0, uu = 0, uv = 0, vv = 0, h = 0, hu = 0, hv = 0;
+
+  void add(double weight, double at_u, double at_v, double height) {
+    w += weight;
+    u += weight * at_u;
+    v += weight * at_v;
+    uu += weight * at_u * at_u;
+    uv += weight * at_u * at_v;
+    vv += weight * at_v * at_v;
+    h += weight * height;
+    hu += weight * height * at_u;
+    hv += weight * height * at_v;
+  }
 };
 
 /// A height and its rises over half an edge, ticks.

@@ -87,15 +87,7 @@ void merge(const MapTile& tile, std::span<const std::size_t> leaves, const TileL
     const double u = (cell.at[ua] - centre[ua]) * 2 / edge,
                  v = (cell.at[va] - centre[va]) * 2 / edge;
     const double h = cell.at[leaf.axis] - centre[leaf.axis], w = cell.area;
-    m.w += w;
-    m.u += w * u;
-    m.v += w * v;
-    m.uu += w * u * u;
-    m.uv += w * u * v;
-    m.vv += w * v * v;
-    m.h += w * h;
-    m.hu += w * h * u;
-    m.hv += w * h * v;
+    m.add(w, u, v, h);
     const auto place = [&](std::uint32_t axis) {
       const double cell_edge = edge / leaf.cells;
       return static_cast<std::size_t>(
