@@ -2,6 +2,10 @@
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(nanoflann 1.4 REQUIRED)
 find_package(fmt 9 REQUIRED)
+# Only its headers, which then declare functions; src/base/fmt_once.cpp defines them, once.
+add_library(curlidar_fmt INTERFACE)
+target_include_directories(curlidar_fmt SYSTEM
+  INTERFACE $<TARGET_PROPERTY:fmt::fmt-header-only,INTERFACE_INCLUDE_DIRECTORIES>)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(Threads REQUIRED)
 find_path(TOMLPLUSPLUS_INCLUDE_DIR toml++/toml.h REQUIRED)
