@@ -171,11 +171,11 @@ Result<RecordEncoding> encode_layout(Cloud given, RecordLayout layout,
     loose = std::move(coded->decoded);
   }
   if (has_image) {
-    CURLIDAR_TRY_ASSIGN(
-        image, encode_record_image(cloud, out.layout, loose, settings,
-                                   beside_bits + 8.0 * static_cast<double>(framed(out.loose)),
-                                   progress, source));
-    out.image = std::move(image);
+    Result<RecordImage> image = encode_record_image(
+        cloud, out.layout, loose, settings,
+        beside_bits + 8.0 * static_cast<double>(framed(out.loose)), progress, source);
+    if (!image) return image.error();
+    out.image.emplace(*std::move(image));
   }
   CURLIDAR_TRY(add_corrections(cloud, slots, settings.compact, loose, out));
   return out;
