@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 
 #include "base/bytes.hpp"
 #include "curlidar/io.hpp"
@@ -24,13 +23,12 @@ struct MeshView {
 };
 
 void add_line(std::string& text, const char* start, const Vec3& v) {
-  fmt::format_to(std::back_inserter(text), "{}{} {} {}", start, static_cast<float>(v.x),
-                 static_cast<float>(v.y), static_cast<float>(v.z));
+  text += fmt::format("{}{} {} {}", start, static_cast<float>(v.x), static_cast<float>(v.y),
+                      static_cast<float>(v.z));
 }
 
 std::string obj_text(const MeshView& mesh) {
   std::string text;
-  auto out = std::back_inserter(text);
   for (const Vec3& v : mesh.vertices) {
     add_line(text, "v ", v);
     text += '\n';
@@ -43,8 +41,8 @@ std::string obj_text(const MeshView& mesh) {
     text += 'f';
     for (const std::uint32_t corner : t) {  // OBJ counts from 1
       const std::uint64_t number = std::uint64_t{corner} + 1;
-      fmt::format_to(out, " {}", number);
-      if (!mesh.normals.empty()) fmt::format_to(out, "//{}", number);
+      text += mesh.normals.empty() ? fmt::format(" {}", number)
+                                   : fmt::format(" {}//{}", number, number);
     }
     text += '\n';
   }
@@ -62,13 +60,12 @@ std::string ply_header(const char* format, const MeshView& mesh) {
 
 std::string ply_text(const MeshView& mesh) {
   std::string text = ply_header("ascii", mesh);
-  auto out = std::back_inserter(text);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     add_line(text, "", mesh.vertices[i]);
     if (!mesh.normals.empty()) add_line(text, " ", mesh.normals[i]);
     text += '\n';
   }
-  for (const Triangle& t : mesh.triangles) fmt::format_to(out, "3 {} {} {}\n", t[0], t[1], t[2]);
+  for (const Triangle& t : mesh.triangles) text += fmt::format("3 {} {} {}\n", t[0], t[1], t[2]);
   return text;
 }
 

@@ -23,10 +23,14 @@ Status check(const MapCompareSettings& settings) {
   if (thresholds && settings.max_distance_m > 0 && std::isfinite(settings.max_distance_m)) {
     return {};
   }
+  std::string within;
+  for (const double threshold : settings.thresholds) {
+    within += fmt::format("{}{}", within.empty() ? "" : ", ", threshold);
+  }
   return Error{ErrorCode::invalid_argument,
                fmt::format("distances up to {} m with shares within {}: give a limit above 0 and "
                            "thresholds below it",
-                           settings.max_distance_m, fmt::join(settings.thresholds, ", "))};
+                           settings.max_distance_m, within)};
 }
 
 Bounds bounds_of_returns(const Cloud& cloud) {
