@@ -20,6 +20,7 @@ T load(const std::byte* bytes) {
 
 template <bool BigEndian, class T>
 void gather_values(const Block& block, const FieldView& field, std::vector<T>& values) {
+  if (values.empty()) return;  // nothing, which may lie nowhere
   T* out = values.data();
   for (std::size_t row = 0; row < block.height; ++row) {
     const std::byte* point = block.bytes.data() + field.offset + row * field.row_stride;
